@@ -21,10 +21,6 @@ fn main() {
         println!("cargo::rerun-if-changed={folder}/index");
     }
     let changed = git(&["status", "--porcelain", "--untracked-files=no"]);
-    let dirty = if changed.is_some_and(|files| files.is_empty()) {
-        ""
-    } else {
-        ", changed since"
-    };
+    let dirty = if changed.is_some_and(|files| files.is_empty()) { "" } else { ", changed since" };
     println!("cargo::rustc-env=HERTZCHAIN_COMMIT={commit}{dirty}");
 }

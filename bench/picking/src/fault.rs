@@ -88,9 +88,7 @@ pub(crate) fn volts(row: &Row, fault: &Fault) -> Vec<Vec<f64>> {
     for channel in &mut channels {
         if let Some((clip, share)) = fault.clip {
             let end = share * row.wall_height;
-            channel
-                .iter_mut()
-                .for_each(|volts| *volts = clip(*volts, end));
+            channel.iter_mut().for_each(|volts| *volts = clip(*volts, end));
         }
         if let Some(low_pass) = fault.low_pass {
             filter(low_pass, channel);

@@ -34,12 +34,7 @@ struct Options {
 
 impl Options {
     fn parse(mut words: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
-        let mut options = Self {
-            shots: 20,
-            seed: 1,
-            only: String::new(),
-            each: false,
-        };
+        let mut options = Self { shots: 20, seed: 1, only: String::new(), each: false };
         while let Some(word) = words.next() {
             match word.as_str() {
                 "--seed" => options.seed = words.next().ok_or(USAGE)?.parse()?,
@@ -77,16 +72,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn line(name: &str, tally: &Tally) -> String {
     let count = tally.correlations.len().max(1) as f64;
     let made = tally.correlations.iter().map(|(made, _)| made).sum::<f64>() / count;
-    let stated = tally
-        .correlations
-        .iter()
-        .map(|(_, stated)| stated)
-        .sum::<f64>()
-        / count;
-    let worst = tally
-        .worst
-        .each_ref()
-        .map(|(share, row)| format!("{share:.0}: {row}"));
+    let stated = tally.correlations.iter().map(|(_, stated)| stated).sum::<f64>() / count;
+    let worst = tally.worst.each_ref().map(|(share, row)| format!("{share:.0}: {row}"));
     format!(
         "| {name} | {} | {} | {} | {} | {} | {} | {} | {} | {made:.2} | {stated:.2} | {} |",
         tally.shots,
@@ -103,57 +90,30 @@ fn line(name: &str, tally: &Tally) -> String {
 
 /// Kinds of records: a name to choose them by, and each with what is done to it.
 fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
-    let at = |noise_db: f64| Fault {
-        noise_db,
-        ..Fault::default()
-    };
+    let at = |noise_db: f64| Fault { noise_db, ..Fault::default() };
     let each = |levels: &[f64], of: &dyn Fn(f64) -> (String, Fault)| -> Vec<(String, Fault)> {
         levels.iter().map(|level| of(*level)).collect()
     };
     let mut families = vec![
-        (
-            "noise",
-            each(&[20.0, 30.0, 40.0, 60.0, 80.0], &|db| {
-                (format!("{db} dB"), at(db))
-            }),
-        ),
+        ("noise", each(&[20.0, 30.0, 40.0, 60.0, 80.0], &|db| (format!("{db} dB"), at(db)))),
         (
             "speeds",
             each(&[30.0, 40.0, 60.0], &|db| {
                 let name = format!("speeds differ by 3 mm/s, {db} dB");
-                (
-                    name,
-                    Fault {
-                        speeds_differ: true,
-                        ..at(db)
-                    },
-                )
+                (name, Fault { speeds_differ: true, ..at(db) })
             }),
         ),
         (
             "crosstalk",
             each(&[40.0, 60.0], &|db| {
                 let name = format!("two channels, crosstalk of 10 %, {db} dB");
-                (
-                    name,
-                    Fault {
-                        separate: true,
-                        crosstalk: 0.1,
-                        ..at(db)
-                    },
-                )
+                (name, Fault { separate: true, crosstalk: 0.1, ..at(db) })
             }),
         ),
         (
             "no return",
             each(&[20.0, 30.0, 40.0, 60.0], &|db| {
-                (
-                    format!("return cut out, {db} dB"),
-                    Fault {
-                        without_return: true,
-                        ..at(db)
-                    },
-                )
+                (format!("return cut out, {db} dB"), Fault { without_return: true, ..at(db) })
             }),
         ),
     ];
@@ -161,13 +121,7 @@ fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
     for lead_s in [60e-6, 80e-6] {
         precursors.extend(each(&[40.0, 60.0], &|db| {
             let name = format!("precursors of 5 %, {:.0} µs before, {db} dB", 1e6 * lead_s);
-            (
-                name,
-                Fault {
-                    precursor: (0.05, lead_s),
-                    ..at(db)
-                },
-            )
+            (name, Fault { precursor: (0.05, lead_s), ..at(db) })
         }));
     }
     families.push(("precursors", precursors));
@@ -176,41 +130,20 @@ fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
         for corrected in [false, true] {
             filtered.extend(each(&[40.0, 60.0], &|db| {
                 let how = if corrected { "taken out" } else { "left" };
-                let low_pass = Some(Bandwidth {
-                    corner_hz: 50e3,
-                    order,
-                });
+                let low_pass = Some(Bandwidth { corner_hz: 50e3, order });
                 let name = format!("low-pass of 50 kHz, order {order}, {how}, {db} dB");
-                (
-                    name,
-                    Fault {
-                        low_pass,
-                        corrected,
-                        ..at(db)
-                    },
-                )
+                (name, Fault { low_pass, corrected, ..at(db) })
             }));
         }
     }
     families.push(("low-pass", filtered));
-    let clips = [
-        ("hard", HARD),
-        ("tanh", TANH),
-        ("short knee", SHORT_KNEE),
-        ("knee", KNEE),
-    ];
+    let clips = [("hard", HARD), ("tanh", TANH), ("short knee", SHORT_KNEE), ("knee", KNEE)];
     for (kind, clip) in clips {
         let mut clipped = Vec::new();
         for share in [0.95, 0.9, 0.83, 0.75, 0.6] {
             clipped.extend(each(&[30.0, 40.0, 60.0, 80.0], &|db| {
                 let name = format!("clipped, {kind}, at {share}, {db} dB");
-                (
-                    name,
-                    Fault {
-                        clip: Some((clip, share)),
-                        ..at(db)
-                    },
-                )
+                (name, Fault { clip: Some((clip, share)), ..at(db) })
             }));
         }
         families.push((kind, clipped));

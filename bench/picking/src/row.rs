@@ -26,10 +26,7 @@ impl Row {
         plan.accuracy = 1e-8;
         let [passing, wall, _] = maxima(&plan)?;
         plan.duration_s = Some(wall.0 + 3.0 * (wall.0 - passing.0));
-        let sensors = vec![
-            Sensor::Bead(plan.sensor_bead),
-            Sensor::Contact(experiment.beads()),
-        ];
+        let sensors = vec![Sensor::Bead(plan.sensor_bead), Sensor::Contact(experiment.beads())];
         let trace = shoot(&plan.clone().watching(sensors, Some(FINE_S)))?.trace;
         let columns = trace.ok_or("no trace")?.columns;
         let [sensor, at_wall] = &columns[..] else {

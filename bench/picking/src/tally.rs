@@ -69,10 +69,8 @@ impl Pulls {
 impl Tally {
     /// Of so many shots of each row.
     pub(crate) fn of(rows: &[Row], fault: &Fault, shots: u64, seed: u64, each: bool) -> Self {
-        let mut tally = Self {
-            worst: [(100.0, String::new()), (100.0, String::new())],
-            ..Self::default()
-        };
+        let mut tally =
+            Self { worst: [(100.0, String::new()), (100.0, String::new())], ..Self::default() };
         let mut series: Vec<Vec<Shot>> = Vec::new();
         for (number, row) in rows.iter().enumerate() {
             let volts = volts(row, fault);
@@ -87,9 +85,7 @@ impl Tally {
                 if let Ok(flight) = &shot.flight {
                     tally.timed += 1;
                     tally.counted += usize::from(counts);
-                    let slower = shot
-                        .speed_m_s
-                        .map_or(1.0, |speed| speed.value / row.speed_m_s);
+                    let slower = shot.speed_m_s.map_or(1.0, |speed| speed.value / row.speed_m_s);
                     let slower = slower.powf(-0.2);
                     let times = [Some(flight.incident_s), flight.reflected_s];
                     for (which, time) in times.into_iter().enumerate() {
@@ -135,10 +131,7 @@ impl Tally {
             if let Some(of) = coverage(pulls, WITHIN).filter(|of| of.count >= 10)
                 && 100.0 * of.share < worst.0
             {
-                *worst = (
-                    100.0 * of.share,
-                    format!("{} {}", row.preset, row.speed_m_s),
-                );
+                *worst = (100.0 * of.share, format!("{} {}", row.preset, row.speed_m_s));
             }
         }
     }
@@ -151,10 +144,7 @@ impl Tally {
                     let apart = |row: &&Row| (row.speed_m_s / speed_m_s.value).ln().abs();
                     apart(a).total_cmp(&apart(b))
                 };
-                let row = rows
-                    .iter()
-                    .filter(|row| row.preset == case.name)
-                    .min_by(near);
+                let row = rows.iter().filter(|row| row.preset == case.name).min_by(near);
                 row.map(|row| {
                     let slower = (speed_m_s.value / row.speed_m_s).powf(-0.2);
                     row.flights_s().map(|time| slower * time)
@@ -223,10 +213,7 @@ fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -
         shot: None,
         case: row.preset.to_owned(),
         programmed_speed_m_s: Some(row.speed_m_s),
-        speed_m_s: Some(Estimate {
-            value: speed_m_s,
-            sigma: 1e-9,
-        }),
+        speed_m_s: Some(Estimate { value: speed_m_s, sigma: 1e-9 }),
         interval_s,
         flight,
         doubts,

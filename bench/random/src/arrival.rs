@@ -59,10 +59,7 @@ impl Signals<'_> {
 
     /// The arrival, as far as these maxima go; none where no maximum of the wall is a pulse.
     pub(crate) fn arrival(&self) -> Option<Arrival> {
-        let pulses = self
-            .wall
-            .iter()
-            .filter(|maximum| self.is_pulse(maximum, 0.0));
+        let pulses = self.wall.iter().filter(|maximum| self.is_pulse(maximum, 0.0));
         let at = |wall: &Maximum| Arrival {
             incident: self.incident(wall.time_s),
             wall: *wall,
@@ -77,16 +74,11 @@ impl Signals<'_> {
     fn is_exceeded(&self, arrival: &Arrival, margin: f64, until_s: f64) -> bool {
         let later = |it: &&Maximum| it.time_s > arrival.wall.time_s && it.time_s <= until_s;
         let least_n = arrival.wall.height_n * (1.0 + margin);
-        self.wall
-            .iter()
-            .filter(later)
-            .any(|it| it.height_n > least_n)
+        self.wall.iter().filter(later).any(|it| it.height_n > least_n)
     }
 
     fn incident(&self, wall_s: f64) -> Option<Maximum> {
-        largest(self.sensor, |it| {
-            it.time_s < wall_s && self.is_pulse(it, 0.0)
-        })
+        largest(self.sensor, |it| it.time_s < wall_s && self.is_pulse(it, 0.0))
     }
 
     fn reflected(&self, arrival: &Arrival) -> Option<Maximum> {
@@ -105,18 +97,12 @@ impl Signals<'_> {
         let right = self.arrival();
         let wall_s = picked.wall.time_s;
         let must_be = |wall: &Maximum| {
-            let other = Arrival {
-                incident: self.incident(wall.time_s),
-                wall: *wall,
-                reflected: None,
-            };
+            let other =
+                Arrival { incident: self.incident(wall.time_s), wall: *wall, reflected: None };
             let until_s = other.search_ends_s();
             !self.is_exceeded(&other, -height, until_s * (1.0 + time))
         };
-        let earlier = self
-            .wall
-            .iter()
-            .filter(|it| it.time_s < wall_s * (1.0 - time));
+        let earlier = self.wall.iter().filter(|it| it.time_s < wall_s * (1.0 - time));
         let wrong = !self.is_pulse(&picked.wall, height)
             || self.is_exceeded(picked, height, picked.search_ends_s() * (1.0 - time))
             || earlier.filter(|it| self.is_pulse(it, -height)).any(must_be);

@@ -65,10 +65,7 @@ pub(crate) struct Verdict {
 
 /// Compares a run with the reference.
 pub(crate) fn compare(answer: &Answer, reference: &Reference) -> Verdict {
-    let none = |finding| Verdict {
-        error: None,
-        finding,
-    };
+    let none = |finding| Verdict { error: None, finding };
     let signals = reference.signals();
     let margin = margin(answer);
     let picked = match &answer.peaks {
@@ -98,18 +95,12 @@ pub(crate) fn compare(answer: &Answer, reference: &Reference) -> Verdict {
         .or_else(|| competing(answer, &matched, reference, margin))
         .or_else(|| lists(answer, reference, margin))
         .or_else(|| (unsure > answer.asked).then_some(Finding::Unresolved));
-    Verdict {
-        error: Some(error),
-        finding,
-    }
+    Verdict { error: Some(error), finding }
 }
 
 fn margin(answer: &Answer) -> Margin {
     let accuracy = answer.asked.max(answer.reached.unwrap_or(0.0)).max(1e-9);
-    Margin {
-        height: OF_HEIGHTS * accuracy,
-        time: OF_TIMES * accuracy,
-    }
+    Margin { height: OF_HEIGHTS * accuracy, time: OF_TIMES * accuracy }
 }
 
 /// Of each time of flight the relative error beyond what the reference is unsure of, and that.
@@ -118,13 +109,9 @@ fn errors(
     right: &Arrival,
     reference: &Reference,
 ) -> Result<Vec<[f64; 2]>, &'static str> {
-    let flights = [
-        (0, picked.incident, right.incident),
-        (2, picked.reflected, right.reflected),
-    ];
-    let seen = flights
-        .into_iter()
-        .filter_map(|(pulse, picked, right)| Some((pulse, picked?, right?)));
+    let flights = [(0, picked.incident, right.incident), (2, picked.reflected, right.reflected)];
+    let seen =
+        flights.into_iter().filter_map(|(pulse, picked, right)| Some((pulse, picked?, right?)));
     let error = |(pulse, at_sensor, right_there): (usize, Maximum, Maximum)| {
         let right_s = right_there.time_s - right.wall.time_s;
         let off_s = at_sensor.time_s - picked.wall.time_s - right_s;
@@ -181,12 +168,7 @@ fn competing(
                 && !has(said, maximum.time_s, near)
         });
         if let Some((maximum, over)) = missing {
-            return Some(Finding::Competing(
-                PULSES[pulse],
-                "not reported",
-                maximum.time_s,
-                *over,
-            ));
+            return Some(Finding::Competing(PULSES[pulse], "not reported", maximum.time_s, *over));
         }
         let could: Vec<Maximum> = expected
             .iter()
@@ -195,21 +177,13 @@ fn competing(
             .collect();
         let is_none = |it: &&Maximum| it.time_s < until_s && !has(&could, it.time_s, near);
         let strange = said.iter().find(is_none)?;
-        Some(Finding::Competing(
-            PULSES[pulse],
-            "is none",
-            strange.time_s,
-            strange.height_n,
-        ))
+        Some(Finding::Competing(PULSES[pulse], "is none", strange.time_s, strange.height_n))
     })
 }
 
 /// Maxima that one has and the other has not, within the time that both cover.
 fn lists(answer: &Answer, reference: &Reference, margin: Margin) -> Option<Finding> {
-    let names = [
-        ["sensor, not listed", "sensor, none"],
-        ["wall, not listed", "wall, none"],
-    ];
+    let names = [["sensor, not listed", "sensor, none"], ["wall, not listed", "wall, none"]];
     let signals = reference.signals();
     let right = [signals.sensor, signals.wall];
     let wall_s = answer.peaks.as_ref().map_or(0.0, |it| it.wall.time_s);

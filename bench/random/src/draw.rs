@@ -80,15 +80,8 @@ pub(crate) enum Family {
 impl Family {
     /// By its name.
     pub(crate) fn named(name: &str) -> Option<Self> {
-        let all = [
-            Self::Light,
-            Self::Heavy,
-            Self::Split,
-            Self::Loaded,
-            Self::Soft,
-        ];
-        all.into_iter()
-            .find(|it| format!("{it:?}").to_lowercase() == name)
+        let all = [Self::Light, Self::Heavy, Self::Split, Self::Loaded, Self::Soft];
+        all.into_iter().find(|it| format!("{it:?}").to_lowercase() == name)
     }
 
     /// Makes a row one of these.
@@ -132,10 +125,7 @@ pub(crate) fn row(seed: u64, at: u64, family: Option<Family>) -> Row {
         let ratio = chance.decades(3e-3, 3e2);
         materials.push(material(&mut chance, (young_pa * ratio).clamp(1e7, 1e12)));
     }
-    let densities: Vec<f64> = materials
-        .iter()
-        .map(|_| chance.decades(800.0, 2e4))
-        .collect();
+    let densities: Vec<f64> = materials.iter().map(|_| chance.decades(800.0, 2e4)).collect();
     let radius_m = chance.decades(1e-3, 3e-2);
     let ball = |radius_m: f64, material: usize| Ball {
         radius_m,
@@ -143,25 +133,16 @@ pub(crate) fn row(seed: u64, at: u64, family: Option<Family>) -> Row {
         material,
     };
     let is_split = family == Some(Family::Split);
-    let beads = beads(
-        &mut chance,
-        (count, is_split),
-        materials.len(),
-        |scale, material| ball(radius_m * scale, material),
-    );
+    let beads = beads(&mut chance, (count, is_split), materials.len(), |scale, material| {
+        ball(radius_m * scale, material)
+    });
     let striker = striker(&mut chance, &beads[0]);
     let sizes = Sizes::new(&beads[0], &materials[beads[0].material], speed_m_s);
     for material in &mut materials {
         // A of about this many contact times.
         material.viscosity_pa_s = 0.5 * material.young_pa * sizes.time_s * damping(&mut chance);
     }
-    let sections = sections(
-        &mut chance,
-        count,
-        &sizes,
-        &beads[0],
-        &materials[beads[0].material],
-    );
+    let sections = sections(&mut chance, count, &sizes, &beads[0], &materials[beads[0].material]);
     let last = beads[count - 1];
     let far = far(&mut chance, last.mass_kg);
     let mut row = Row {
@@ -186,11 +167,7 @@ pub(crate) fn row(seed: u64, at: u64, family: Option<Family>) -> Row {
 }
 
 fn material(chance: &mut Chance, young_pa: f64) -> Material {
-    Material {
-        young_pa,
-        poisson: chance.even(0.05, 0.45),
-        viscosity_pa_s: 0.0,
-    }
+    Material { young_pa, poisson: chance.even(0.05, 0.45), viscosity_pa_s: 0.0 }
 }
 
 /// Strength of a dissipative term over the elastic force.
@@ -237,10 +214,7 @@ fn beads(
 fn striker(chance: &mut Chance, first: &Ball) -> Ball {
     match chance.below(3) {
         0 => *first,
-        1 => Ball {
-            mass_kg: first.mass_kg * chance.decades(1e-3, 1e3),
-            ..*first
-        },
+        1 => Ball { mass_kg: first.mass_kg * chance.decades(1e-3, 1e3), ..*first },
         _ => {
             let scale: f64 = chance.decades(0.15, 5.0);
             Ball {
@@ -283,18 +257,13 @@ fn laws(chance: &mut Chance, sizes: &Sizes, bead: &Ball, material: &Material) ->
         0 | 1 => {
             let exponent = (100.0 * chance.even(1.0, 3.0)).round() / 100.0;
             let size = chance.decades(0.3, 3.0) * sizes.force_n;
-            Law::ElasticPower {
-                stiffness: size / sizes.overlap_m.powf(exponent),
-                exponent,
-            }
+            Law::ElasticPower { stiffness: size / sizes.overlap_m.powf(exponent), exponent }
         }
         2 => {
             let modulus = 0.5 * material.young_pa / (1.0 - material.poisson.powi(2));
             let yields_m = sizes.overlap_m * chance.decades(0.05, 2.0);
             let root = (yields_m / reduced(bead.radius_m, bead.radius_m)).sqrt();
-            Law::ElasticPlastic {
-                yield_pa: 2.0 * modulus * root / PI,
-            }
+            Law::ElasticPlastic { yield_pa: 2.0 * modulus * root / PI }
         }
         _ => Law::ElasticHertz,
     };
@@ -312,31 +281,17 @@ fn dissipative(chance: &mut Chance, sizes: &Sizes) -> Law {
     match chance.below(9) {
         0 | 1 => Law::Viscoelastic,
         2 => Law::Brilliantov1996,
-        3 => Law::Cubic {
-            coefficient: size / speed.powi(3),
-        },
-        4 => Law::KuwabaraKono {
-            coefficient: size / (speed * sizes.overlap_m.sqrt()),
-        },
-        5 => Law::Tsuji {
-            ratio: damping(chance),
-        },
-        6 => Law::Linear {
-            coefficient: size / speed,
-        },
-        7 if chance.chance(0.3) => Law::CubicUngated {
-            coefficient: size / speed.powi(3),
-        },
+        3 => Law::Cubic { coefficient: size / speed.powi(3) },
+        4 => Law::KuwabaraKono { coefficient: size / (speed * sizes.overlap_m.sqrt()) },
+        5 => Law::Tsuji { ratio: damping(chance) },
+        6 => Law::Linear { coefficient: size / speed },
+        7 if chance.chance(0.3) => Law::CubicUngated { coefficient: size / speed.powi(3) },
         _ => {
             let hundredths = |value: f64| (100.0 * value).round() / 100.0;
             let rate = hundredths(chance.even(0.5, 2.5));
             let overlap = hundredths(chance.even(0.0, 1.5));
             let unit = sizes.overlap_m.powf(overlap) * speed.powf(rate);
-            Law::Power {
-                coefficient: size / unit,
-                rate,
-                overlap,
-            }
+            Law::Power { coefficient: size / unit, rate, overlap }
         }
     }
 }
@@ -350,10 +305,7 @@ fn surroundings(chance: &mut Chance, row: &mut Row, sizes: &Sizes) {
             true => 0.0,
             false => force_n / sizes.overlap_m * chance.decades(1e-3, 1.0),
         };
-        row.push = Some(Push {
-            force_n,
-            stiffness_n_m,
-        });
+        row.push = Some(Push { force_n, stiffness_n_m });
     }
     if chance.chance(0.15) {
         row.incline_deg = (10.0 * chance.decades(0.1, 90.0)).round() / 10.0;
@@ -363,8 +315,6 @@ fn surroundings(chance: &mut Chance, row: &mut Row, sizes: &Sizes) {
         let gap_m = sizes.overlap_m * chance.decades(1e-3, 1e2);
         let every = 1.max(chance.below(count + 1));
         let contacts = (1..=count).step_by(every);
-        row.gaps = contacts
-            .map(|contact| (contact, gap_m * chance.even(0.0, 2.0)))
-            .collect();
+        row.gaps = contacts.map(|contact| (contact, gap_m * chance.even(0.0, 2.0))).collect();
     }
 }

@@ -163,11 +163,7 @@ fn outcomes(options: &Options, (at, row): (u64, &Row), file: &Path) -> Vec<Outco
     }
     let needed = said.iter().filter_map(|(_, said)| {
         let said = said.as_ref().ok()?;
-        Some(
-            said.peaks
-                .as_ref()
-                .map_or(said.duration_s, Arrival::search_ends_s),
-        )
+        Some(said.peaks.as_ref().map_or(said.duration_s, Arrival::search_ends_s))
     });
     let until_s = BEYOND * needed.fold(0.0, f64::max);
     let verdicts = verdicts(row, until_s, &said);
@@ -186,10 +182,7 @@ fn verdicts(row: &Row, until_s: f64, said: &[(String, Result<Answer, Silence>)])
         let unresolved = until_s > 0.0 && reference.cover(until_s).is_err();
         let verdict = |(_, said): &(String, Result<Answer, Silence>)| match said {
             Ok(answer) if !unresolved => compare(answer, &reference),
-            said => Verdict {
-                error: None,
-                finding: said.is_ok().then_some(Finding::Unresolved),
-            },
+            said => Verdict { error: None, finding: said.is_ok().then_some(Finding::Unresolved) },
         };
         said.iter().map(verdict).collect()
     };
@@ -256,9 +249,7 @@ fn run(options: &Options) -> std::io::Result<BTreeMap<String, Tally>> {
     let (next, begun) = (AtomicU64::new(options.from), Instant::now());
     let tallies = Mutex::new(BTreeMap::<String, Tally>::new());
     let work = |job: usize| {
-        let file = options
-            .keep
-            .join(format!(".row-{}-{job}.toml", std::process::id()));
+        let file = options.keep.join(format!(".row-{}-{job}.toml", std::process::id()));
         loop {
             let at = next.fetch_add(1, Ordering::Relaxed);
             if at >= options.from + options.count || begun.elapsed() > options.limit {
@@ -324,9 +315,8 @@ fn sample(options: &Options) -> std::io::Result<()> {
         let agrees = compare(&answer, &reference).finding.is_none();
         if let (true, Some(incident)) = (agrees, right.incident) {
             let incident_s = right.wall.time_s - incident.time_s;
-            let back = right
-                .reflected
-                .filter(|_| answer.peaks.is_ok_and(|it| it.reflected.is_some()));
+            let back =
+                right.reflected.filter(|_| answer.peaks.is_ok_and(|it| it.reflected.is_some()));
             let reflected_s = back.map_or(f64::NAN, |back| back.time_s - right.wall.time_s);
             println!("{},{at},{incident_s:.12e},{reflected_s:.12e}", options.seed);
         }

@@ -87,10 +87,7 @@ impl Motion {
         Self {
             mode: contacts.iter().map(open).collect(),
             loading: vec![true; contacts.len()],
-            largest: contacts
-                .iter()
-                .map(|contact| rest(contact).max(0.0))
-                .collect(),
+            largest: contacts.iter().map(|contact| rest(contact).max(0.0)).collect(),
             equations,
             scales,
             sensor,
@@ -131,10 +128,7 @@ impl Motion {
     #[inline(always)]
     fn gap(&self, y: &[f64], c: usize) -> (f64, f64) {
         let v = &y[self.bodies()..];
-        (
-            self.equations.contacts[c].rest_m - (y[c + 1] - y[c]),
-            v[c] - v[c + 1],
-        )
+        (self.equations.contacts[c].rest_m - (y[c + 1] - y[c]), v[c] - v[c + 1])
     }
 
     /// Force of a contact in its mode.
@@ -199,9 +193,7 @@ impl Motion {
                     (*old, *new) = (*new, *new + (*new - *old) * factor);
                 }
             }
-            let error = table
-                .last()
-                .map_or(f64::INFINITY, |last| self.distance(&row, last));
+            let error = table.last().map_or(f64::INFINITY, |last| self.distance(&row, last));
             table.push(row);
             if error <= self.scales.tolerance {
                 columns = Some(k);
@@ -213,11 +205,7 @@ impl Motion {
             last_error = error;
         }
         let increment = table.pop().unwrap_or_default();
-        let end = self
-            .y
-            .iter()
-            .zip(increment)
-            .map(|(y, increment)| y + increment);
+        let end = self.y.iter().zip(increment).map(|(y, increment)| y + increment);
         (end.collect(), columns)
     }
 
@@ -241,27 +229,19 @@ impl Motion {
         }
         derivative(&now, &mut f);
         let smooth = old.iter().zip(&now).zip(&f);
-        smooth
-            .map(|((old, now), f)| 0.5 * (old + now + part * f))
-            .collect()
+        smooth.map(|((old, now), f)| 0.5 * (old + now + part * f)).collect()
     }
 
     /// Largest difference of two increments in units of the motion.
     fn distance(&self, one: &[f64], two: &[f64]) -> f64 {
         let bodies = self.bodies();
-        let Scales {
-            speed_m_s, time_s, ..
-        } = self.scales;
+        let Scales { speed_m_s, time_s, .. } = self.scales;
         (0..bodies).fold(0.0_f64, |worst, i| {
             let speed = self.y[bodies + i].abs() + 1e-3 * speed_m_s;
             let v = (one[bodies + i] - two[bodies + i]).abs() / speed;
             let x = (one[i] - two[i]).abs() / (speed * time_s);
             let worse = v.max(x);
-            if worse > worst || worse.is_nan() {
-                worse
-            } else {
-                worst
-            }
+            if worse > worst || worse.is_nan() { worse } else { worst }
         })
     }
 
@@ -301,11 +281,7 @@ impl Motion {
         let bodies = self.bodies();
         let tiny = 10.0 * TINY * self.scales.speed_m_s * self.scales.time_s;
         (0..self.mode.len()).find_map(|c| {
-            let sign = if self.mode[c] == Mode::Open {
-                1.0
-            } else {
-                -1.0
-            };
+            let sign = if self.mode[c] == Mode::Open { 1.0 } else { -1.0 };
             let ((d0, r0), (d1, r1)) = (self.gap(&self.y, c), self.gap(end, c));
             if sign * r0 <= 0.0 || sign * r1 >= 0.0 {
                 return None;
@@ -313,9 +289,7 @@ impl Motion {
             let [a0, a1] = slopes.map(|f| f[bodies + c] - f[bodies + c + 1]);
             let between = |s: f64| quintic([d0, r0 * h, a0 * h * h], [d1, r1 * h, a1 * h * h], s);
             let places = (1..8).map(|i| 0.125 * f64::from(i));
-            places
-                .filter(|s| sign * between(*s) > tiny)
-                .reduce(f64::min)
+            places.filter(|s| sign * between(*s) > tiny).reduce(f64::min)
         })
     }
 
@@ -400,9 +374,8 @@ impl Motion {
 
     /// Gives every contact that must change its new mode.
     fn change(&mut self) {
-        let must: Vec<usize> = (0..self.mode.len())
-            .filter(|&c| self.switch(&self.y, c) > 0.0)
-            .collect();
+        let must: Vec<usize> =
+            (0..self.mode.len()).filter(|&c| self.switch(&self.y, c) > 0.0).collect();
         for c in must {
             let (d, r) = self.gap(&self.y, c);
             let size = self.scales.speed_m_s * self.scales.time_s;

@@ -61,20 +61,14 @@ pub(crate) enum Term {
 
 impl Term {
     fn of(law: &Law, one: (&Ball, &Material), other: (f64, f64, &Material)) -> Self {
-        let (radius, mass) = (
-            reduced(one.0.radius_m, other.0),
-            reduced(one.0.mass_kg, other.1),
-        );
+        let (radius, mass) = (reduced(one.0.radius_m, other.0), reduced(one.0.mass_kg, other.1));
         let (soft, softer) = (compliance(one.1), compliance(other.2));
         let hertz = 4.0 / 3.0 * radius.sqrt() / (soft + softer);
         let mean =
             |of: fn(&Material) -> f64| (of(one.1) * soft + of(other.2) * softer) / (soft + softer);
         match *law {
             Law::ElasticHertz => Self::Hertz(hertz),
-            Law::ElasticPower {
-                stiffness,
-                exponent,
-            } => Self::Elastic(stiffness, exponent),
+            Law::ElasticPower { stiffness, exponent } => Self::Elastic(stiffness, exponent),
             Law::ElasticPlastic { yield_pa } => {
                 let modulus = 1.0 / (soft + softer);
                 let yields = radius * (PI * yield_pa / (2.0 * modulus)).powi(2);
@@ -87,11 +81,7 @@ impl Term {
             Law::Linear { coefficient } => Self::Linear(coefficient),
             Law::Cubic { coefficient } => Self::Cubic(coefficient),
             Law::CubicUngated { coefficient } => Self::Ungated(coefficient),
-            Law::Power {
-                coefficient,
-                rate,
-                overlap,
-            } => Self::Power(coefficient, rate, overlap),
+            Law::Power { coefficient, rate, overlap } => Self::Power(coefficient, rate, overlap),
         }
     }
 
@@ -123,11 +113,7 @@ impl Term {
             Self::Power(c, q, p) => {
                 let by_rate = c * d.powf(p) * q * r.abs().powf(q - 1.0);
                 let size = c * r.abs().powf(q).copysign(r);
-                let by_overlap = if p == 0.0 {
-                    0.0
-                } else {
-                    p * d.powf(p - 1.0) * size
-                };
+                let by_overlap = if p == 0.0 { 0.0 } else { p * d.powf(p - 1.0) * size };
                 [by_overlap, by_rate]
             }
         }
@@ -170,33 +156,21 @@ impl Contact {
     #[inline(always)]
     pub(crate) fn closed(&self, d: f64, r: f64, largest: f64) -> f64 {
         let d = d.max(0.0);
-        self.terms
-            .iter()
-            .map(|term| term.force(d, r, largest))
-            .sum()
+        self.terms.iter().map(|term| term.force(d, r, largest)).sum()
     }
 
     /// Force of an open contact.
     #[inline(always)]
     pub(crate) fn open(&self, r: f64) -> f64 {
-        let ungated = self
-            .terms
-            .iter()
-            .filter(|term| matches!(term, Term::Ungated(_)));
+        let ungated = self.terms.iter().filter(|term| matches!(term, Term::Ungated(_)));
         ungated.map(|term| term.force(0.0, r, 0.0)).sum()
     }
 
     /// Derivatives of the force by overlap and by rate, of a closed or an open contact.
     pub(crate) fn slopes(&self, is_open: bool, d: f64, r: f64, largest: f64) -> [f64; 2] {
         let acts = |term: &&Term| !is_open || matches!(term, Term::Ungated(_));
-        let slopes = self
-            .terms
-            .iter()
-            .filter(acts)
-            .map(|term| term.slopes(d.max(0.0), r, largest));
-        slopes.fold([0.0; 2], |sum, slope| {
-            [sum[0] + slope[0], sum[1] + slope[1]]
-        })
+        let slopes = self.terms.iter().filter(acts).map(|term| term.slopes(d.max(0.0), r, largest));
+        slopes.fold([0.0; 2], |sum, slope| [sum[0] + slope[0], sum[1] + slope[1]])
     }
 
     /// Overlap at which the elastic terms carry a force, by bisection.
@@ -206,11 +180,7 @@ impl Contact {
         }
         let (mut low, mut high) = (0.0_f64, 1.0_f64);
         for _ in 0..2000 {
-            let middle = if low == 0.0 {
-                high * 1e-3
-            } else {
-                (low * high).sqrt()
-            };
+            let middle = if low == 0.0 { high * 1e-3 } else { (low * high).sqrt() };
             match self.closed(middle, 0.0, 0.0) < force_n {
                 true => low = middle,
                 false => high = middle,
@@ -271,18 +241,10 @@ impl Equations {
 
 fn contact(row: &Row, c: usize, load_n: f64) -> Contact {
     let count = row.beads.len();
-    let left = if c == 0 {
-        &row.striker
-    } else {
-        &row.beads[c - 1]
-    };
+    let left = if c == 0 { &row.striker } else { &row.beads[c - 1] };
     let last = &row.beads[count - 1];
     let (radius, mass, material) = match (c == count, row.far) {
-        (false, _) => (
-            row.beads[c].radius_m,
-            row.beads[c].mass_kg,
-            row.beads[c].material,
-        ),
+        (false, _) => (row.beads[c].radius_m, row.beads[c].mass_kg, row.beads[c].material),
         (true, Far::HalfBead) => (last.radius_m, f64::INFINITY, last.material),
         (true, Far::Plane) => (f64::INFINITY, f64::INFINITY, last.material),
         (true, Far::Stop { mass_kg }) => (last.radius_m, mass_kg, last.material),
@@ -292,22 +254,11 @@ fn contact(row: &Row, c: usize, load_n: f64) -> Contact {
     let laws = section.map_or(&[][..], |(_, laws)| laws);
     let materials = (&row.materials[left.material], &row.materials[material]);
     let other = (radius, mass, materials.1);
-    let terms: Vec<Term> = laws
-        .iter()
-        .map(|law| Term::of(law, (left, materials.0), other))
-        .collect();
-    let gap_m = row
-        .gaps
-        .iter()
-        .find(|(at, _)| *at == c)
-        .map_or(0.0, |(_, gap_m)| *gap_m);
+    let terms: Vec<Term> =
+        laws.iter().map(|law| Term::of(law, (left, materials.0), other)).collect();
+    let gap_m = row.gaps.iter().find(|(at, _)| *at == c).map_or(0.0, |(_, gap_m)| *gap_m);
     let is_plastic = terms.iter().any(|term| matches!(term, Term::Plastic(_)));
-    let mut contact = Contact {
-        terms,
-        rest_m: 0.0,
-        load_n,
-        is_plastic,
-    };
+    let mut contact = Contact { terms, rest_m: 0.0, load_n, is_plastic };
     contact.rest_m = match load_n > 0.0 {
         true => contact.overlap_at(load_n),
         false => -gap_m,

@@ -27,9 +27,8 @@ impl Ask {
 
     /// As typed after the file's name.
     pub(crate) fn name(&self) -> String {
-        let words: Vec<&str> = std::iter::once(self.verb)
-            .chain(self.options.iter().map(String::as_str))
-            .collect();
+        let words: Vec<&str> =
+            std::iter::once(self.verb).chain(self.options.iter().map(String::as_str)).collect();
         words.join(" ")
     }
 }
@@ -66,11 +65,7 @@ pub(crate) fn ask(
     ask: &Ask,
 ) -> Result<Answer, Silence> {
     let mut command = Command::new(program);
-    command
-        .arg(ask.verb)
-        .arg(file)
-        .arg("--json")
-        .args(&ask.options);
+    command.arg(ask.verb).arg(file).arg("--json").args(&ask.options);
     if ask.verb == "sweep" {
         command.args(["--speeds", &format!("{speed_m_s:?} m/s"), "--threads", "1"]);
     }
@@ -90,10 +85,7 @@ pub(crate) fn ask(
 /// Standard output of a command that ends well and in time.
 fn output(command: &mut Command) -> Result<String, Silence> {
     let refused = |error: std::io::Error| Silence::Refused(error.to_string());
-    command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .stdin(Stdio::null());
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).stdin(Stdio::null());
     let mut child = command.spawn().map_err(refused)?;
     // Read while it runs: a full pipe would stop it.
     let mut pipes = (child.stdout.take(), child.stderr.take());
@@ -141,10 +133,7 @@ fn processor_s(process: u32) -> Option<f64> {
 }
 
 fn maximum(json: &Value) -> Option<Maximum> {
-    Some(Maximum {
-        time_s: json["time_s"].as_f64()?,
-        height_n: json["value"].as_f64()?,
-    })
+    Some(Maximum { time_s: json["time_s"].as_f64()?, height_n: json["value"].as_f64()? })
 }
 
 fn maxima(json: &Value) -> Vec<Maximum> {
@@ -160,10 +149,7 @@ fn answer(shot: &Value) -> Answer {
             wall,
             reflected: maximum(&passage["reflected"]),
         }),
-        None => Err(passage["missing"]
-            .as_str()
-            .unwrap_or("no reason given")
-            .to_owned()),
+        None => Err(passage["missing"].as_str().unwrap_or("no reason given").to_owned()),
     };
     let competing = |pulse: &str| {
         let all = passage["competing"].as_array().into_iter().flatten();
@@ -178,9 +164,7 @@ fn answer(shot: &Value) -> Answer {
         duration_s: shot["duration_s"].as_f64().unwrap_or(f64::NAN),
         maxima: [&shot["sensor_maxima"], &passage["wall_maxima"]].map(maxima),
         competing: PULSES.map(competing),
-        notes: notes
-            .filter_map(|note| Some(note.as_str()?.to_owned()))
-            .collect(),
+        notes: notes.filter_map(|note| Some(note.as_str()?.to_owned())).collect(),
         force_passes: shot["force_passes"].as_f64().unwrap_or(f64::NAN),
     }
 }

@@ -122,11 +122,7 @@ impl Reference {
     /// The maxima of both signals.
     pub(crate) fn signals(&self) -> Signals<'_> {
         let [sensor, wall] = &self.runs[0].maxima;
-        Signals {
-            sensor,
-            wall,
-            least_n_s: self.least_n_s,
-        }
+        Signals { sensor, wall, least_n_s: self.least_n_s }
     }
 
     /// Those maxima of the sensor bead and of the wall that stand out on both sides.
@@ -157,8 +153,5 @@ fn prominent(maxima: &[Maximum], dips: &[f64]) -> Vec<Maximum> {
 /// The maximum nearest to a time.
 pub(crate) fn nearest(maxima: &[Maximum], time_s: f64) -> Option<Maximum> {
     let distance = |maximum: &Maximum| (maximum.time_s - time_s).abs();
-    maxima
-        .iter()
-        .copied()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    maxima.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }

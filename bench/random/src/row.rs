@@ -25,35 +25,16 @@ pub(crate) struct Ball {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Law {
     ElasticHertz,
-    ElasticPower {
-        stiffness: f64,
-        exponent: f64,
-    },
-    ElasticPlastic {
-        yield_pa: f64,
-    },
+    ElasticPower { stiffness: f64, exponent: f64 },
+    ElasticPlastic { yield_pa: f64 },
     Viscoelastic,
     Brilliantov1996,
-    Cubic {
-        coefficient: f64,
-    },
-    CubicUngated {
-        coefficient: f64,
-    },
-    KuwabaraKono {
-        coefficient: f64,
-    },
-    Tsuji {
-        ratio: f64,
-    },
-    Linear {
-        coefficient: f64,
-    },
-    Power {
-        coefficient: f64,
-        rate: f64,
-        overlap: f64,
-    },
+    Cubic { coefficient: f64 },
+    CubicUngated { coefficient: f64 },
+    KuwabaraKono { coefficient: f64 },
+    Tsuji { ratio: f64 },
+    Linear { coefficient: f64 },
+    Power { coefficient: f64, rate: f64, overlap: f64 },
 }
 
 /// What the last bead leans on, of the same material as the last bead.
@@ -98,21 +79,16 @@ impl Law {
             Self::ElasticHertz => "\"elastic_hertz\"".into(),
             Self::Viscoelastic => "\"damping_viscoelastic\"".into(),
             Self::Brilliantov1996 => "\"damping_brilliantov_1996\"".into(),
-            Self::ElasticPower {
-                stiffness,
-                exponent,
-            } => table(
+            Self::ElasticPower { stiffness, exponent } => table(
                 "elastic_power",
                 format!("stiffness = \"{stiffness:?} N/m^{exponent}\", exponent = {exponent:?}"),
             ),
-            Self::ElasticPlastic { yield_pa } => table(
-                "elastic_plastic_thornton",
-                format!("yield_pressure = \"{yield_pa:?} Pa\""),
-            ),
-            Self::Cubic { coefficient } => table(
-                "damping_cubic",
-                format!("coefficient = \"{coefficient:?} kg s/m^2\""),
-            ),
+            Self::ElasticPlastic { yield_pa } => {
+                table("elastic_plastic_thornton", format!("yield_pressure = \"{yield_pa:?} Pa\""))
+            }
+            Self::Cubic { coefficient } => {
+                table("damping_cubic", format!("coefficient = \"{coefficient:?} kg s/m^2\""))
+            }
             Self::CubicUngated { coefficient } => table(
                 "damping_cubic_ungated",
                 format!("coefficient = \"{coefficient:?} kg s/m^2\""),
@@ -122,15 +98,10 @@ impl Law {
                 format!("coefficient = \"{coefficient:?} N s/m^1.5\""),
             ),
             Self::Tsuji { ratio } => table("damping_tsuji", format!("damping_ratio = {ratio:?}")),
-            Self::Linear { coefficient } => table(
-                "damping_linear",
-                format!("coefficient = \"{coefficient:?} N s/m\""),
-            ),
-            Self::Power {
-                coefficient,
-                rate,
-                overlap,
-            } => table(
+            Self::Linear { coefficient } => {
+                table("damping_linear", format!("coefficient = \"{coefficient:?} N s/m\""))
+            }
+            Self::Power { coefficient, rate, overlap } => table(
                 "damping_power",
                 format!(
                     "coefficient = \"{coefficient:?} N/m^{overlap}/(m/s)^{rate}\", \
@@ -143,11 +114,7 @@ impl Law {
 
 impl Ball {
     fn toml(&self, text: &mut String) {
-        let Self {
-            radius_m,
-            mass_kg,
-            material,
-        } = self;
+        let Self { radius_m, mass_kg, material } = self;
         let _ = writeln!(
             text,
             "radius = \"{radius_m:?} m\"\nmass = \"{mass_kg:?} kg\"\nmaterial = \"m{material}\""
@@ -163,11 +130,7 @@ impl Row {
             text += "tension = \"clipped\"\n";
         }
         for (index, material) in self.materials.iter().enumerate() {
-            let Material {
-                young_pa,
-                poisson,
-                viscosity_pa_s,
-            } = material;
+            let Material { young_pa, poisson, viscosity_pa_s } = material;
             let _ = writeln!(
                 text,
                 "[materials.m{index}]\nyoung_modulus = \"{young_pa:?} Pa\"\n\
@@ -192,10 +155,7 @@ impl Row {
         for ((first, laws), last) in self.sections.iter().zip(lasts) {
             let laws: Vec<String> = laws.iter().map(Law::toml).collect();
             let laws = laws.join(", ");
-            let _ = writeln!(
-                text,
-                "[[contacts]]\nfrom = {first}\nto = {last}\nlaws = [{laws}]"
-            );
+            let _ = writeln!(text, "[[contacts]]\nfrom = {first}\nto = {last}\nlaws = [{laws}]");
         }
         for (contact, gap_m) in &self.gaps {
             let _ = writeln!(text, "[[gaps]]\ncontact = {contact}\ngap = \"{gap_m:?} m\"");
@@ -213,11 +173,7 @@ impl Row {
         if let Some(mass_kg) = mass_kg {
             let _ = writeln!(text, "mass = \"{mass_kg:?} kg\"");
         }
-        if let Some(Push {
-            force_n,
-            stiffness_n_m,
-        }) = self.push
-        {
+        if let Some(Push { force_n, stiffness_n_m }) = self.push {
             let (kind, stiffness) = match stiffness_n_m == 0.0 {
                 true => ("constant", String::new()),
                 false => ("spring", format!("\nstiffness = \"{stiffness_n_m:?} N/m\"")),

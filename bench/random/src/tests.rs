@@ -8,18 +8,10 @@ use hertzchain_sim::{Control, InstructionSet, Plan, Shot, run_plans, shoot_estim
 
 /// The paper's row of 40 steel balls.
 fn paper(speed_m_s: f64, laws: &[Law]) -> Row {
-    let ball = Ball {
-        radius_m: 6.35e-3,
-        mass_kg: 8.54e-3,
-        material: 0,
-    };
+    let ball = Ball { radius_m: 6.35e-3, mass_kg: 8.54e-3, material: 0 };
     Row {
         title: String::new(),
-        materials: vec![Material {
-            young_pa: 213e9,
-            poisson: 0.3,
-            viscosity_pa_s: 3.2e4,
-        }],
+        materials: vec![Material { young_pa: 213e9, poisson: 0.3, viscosity_pa_s: 3.2e4 }],
         striker: ball,
         speed_m_s,
         beads: vec![ball; 40],
@@ -39,21 +31,14 @@ fn flights(row: &Row) -> [f64; 2] {
     reference.cover(0.0).unwrap();
     let arrival = reference.signals().arrival().unwrap();
     let wall_s = arrival.wall.time_s;
-    [
-        wall_s - arrival.incident.unwrap().time_s,
-        arrival.reflected.unwrap().time_s - wall_s,
-    ]
+    [wall_s - arrival.incident.unwrap().time_s, arrival.reflected.unwrap().time_s - wall_s]
 }
 
 /// Against docs of the design: ToFs printed to 1e-12 s there.
 #[test]
 fn times_of_flight_of_the_paper_s_rows_agree_with_other_integrations() {
     let visco = [Law::ElasticHertz, Law::Viscoelastic];
-    let dry = [
-        Law::ElasticHertz,
-        Law::Viscoelastic,
-        Law::Cubic { coefficient: 77.0 },
-    ];
+    let dry = [Law::ElasticHertz, Law::Viscoelastic, Law::Cubic { coefficient: 77.0 }];
     let known = [
         (1.0, &visco[..1], [630.841591, 632.265715]),
         (0.5, &visco[..], [751.270959, 783.036376]),
@@ -63,10 +48,7 @@ fn times_of_flight_of_the_paper_s_rows_agree_with_other_integrations() {
         let found = flights(&paper(speed_m_s, laws));
         for (found_s, right_us) in found.into_iter().zip(right_us) {
             // The digits known, and a few of the last one.
-            assert!(
-                (1e6 * found_s - right_us).abs() < 2e-6,
-                "{found:?} {right_us}"
-            );
+            assert!((1e6 * found_s - right_us).abs() < 2e-6, "{found:?} {right_us}");
         }
     }
 }
@@ -80,19 +62,14 @@ fn error(shot: &Shot, right_s: [f64; 2]) -> f64 {
     let flight = shot.flight.unwrap();
     let off = |found_s: f64, right_s: f64| (found_s / right_s - 1.0).abs();
     assert_eq!(flight.reflected_s.is_none(), right_s[1].is_nan());
-    let back = flight
-        .reflected_s
-        .map_or(0.0, |found_s| off(found_s, right_s[1]));
+    let back = flight.reflected_s.map_or(0.0, |found_s| off(found_s, right_s[1]));
     off(flight.incident_s, right_s[0]).max(back)
 }
 
 /// As wrong as stated, and the reference's own error.
 fn assert_as_stated(shot: &Shot, right_s: [f64; 2], what: &str) {
     let (error, stated) = (error(shot, right_s), shot.accuracy_reached.unwrap());
-    assert!(
-        error <= stated + 1e-9,
-        "{what}: error {error:e}, stated {stated:e}"
-    );
+    assert!(error <= stated + 1e-9, "{what}: error {error:e}, stated {stated:e}");
 }
 
 #[test]

@@ -21,11 +21,7 @@ fn main() {
 
 /// The laws of a bench by name; `unfused` is a sum that the loop runs law by law.
 fn laws(name: &str) -> Vec<Arc<dyn Law>> {
-    let power = DampingPower {
-        coefficient: 1.0,
-        rate_exponent: 1.0,
-        overlap_exponent: 0.5,
-    };
+    let power = DampingPower { coefficient: 1.0, rate_exponent: 1.0, overlap_exponent: 0.5 };
     match name {
         "hertz" => vec![hertz()],
         "viscoelastic" => vec![hertz(), viscoelastic()],
@@ -50,22 +46,12 @@ fn settings(set: &str, beads: usize) -> Settings {
 /// that is looked at in a step.
 fn block(bencher: Bencher<'_, '_>, precision: Precision, set: &str, name: &str) {
     let system = System::new(&row(40, 0.5, laws(name))).unwrap();
-    let shot = Shot {
-        system: &system,
-        step: 0.16,
-        duration_s: 5e-3,
-        precision,
-    };
+    let shot = Shot { system: &system, step: 0.16, duration_s: 5e-3, precision };
     let settings = settings(set, 40);
     let shots = vec![shot; precision.lanes()];
-    let looked_at = fire(&shots, &settings)[0]
-        .as_ref()
-        .unwrap()
-        .bodies_looked_at;
+    let looked_at = fire(&shots, &settings)[0].as_ref().unwrap().bodies_looked_at;
     let items = ItemsCount::new(looked_at as usize * shots.len());
-    bencher
-        .counter(items)
-        .bench(|| black_box(fire(&shots, &settings)));
+    bencher.counter(items).bench(|| black_box(fire(&shots, &settings)));
 }
 
 const SETS: [&str; 3] = ["avx512", "avx2", "sse2"];
@@ -86,9 +72,7 @@ fn force_pass(bencher: Bencher<'_, '_>, precision: Precision, set: &str) {
     let system = System::new(&row(40, 0.5, laws("dry"))).unwrap();
     let (set, times) = (InstructionSet::named(set).unwrap_or_default(), 1_000);
     let items = ItemsCount::new(times * precision.lanes() * system.contacts());
-    bencher
-        .counter(items)
-        .bench(|| repeat_force_pass(black_box(&system), precision, set, times));
+    bencher.counter(items).bench(|| repeat_force_pass(black_box(&system), precision, set, times));
 }
 
 #[divan::bench(args = SETS)]
@@ -115,16 +99,9 @@ fn laws_in_single_precision(bencher: Bencher<'_, '_>, name: &str) {
 #[divan::bench(args = [Precision::Double, Precision::Single])]
 fn one_dry_shot_alone(bencher: Bencher<'_, '_>, precision: Precision) {
     let system = System::new(&row(40, 0.5, laws("dry"))).unwrap();
-    let shot = Shot {
-        system: &system,
-        step: 0.16,
-        duration_s: 5e-3,
-        precision,
-    };
+    let shot = Shot { system: &system, step: 0.16, duration_s: 5e-3, precision };
     let settings = settings("", 40);
-    bencher
-        .counter(ItemsCount::new(1_usize))
-        .bench(|| black_box(fire(&[shot], &settings)));
+    bencher.counter(ItemsCount::new(1_usize)).bench(|| black_box(fire(&[shot], &settings)));
 }
 
 /// What memory alone allows: as many numbers read and written as by a step of
@@ -164,13 +141,7 @@ fn one_long_chain(bencher: Bencher<'_, '_>, beads: usize) {
         duration_s: 0.1 * steps as f64 * system.scales().time_s,
         precision: Precision::Double,
     };
-    let settings = Settings {
-        sensors: vec![],
-        end: End::Duration,
-        whole_chain: true,
-        ..settings("", beads)
-    };
-    bencher
-        .counter(ItemsCount::new(steps * beads))
-        .bench(|| black_box(fire(&[shot], &settings)));
+    let settings =
+        Settings { sensors: vec![], end: End::Duration, whole_chain: true, ..settings("", beads) };
+    bencher.counter(ItemsCount::new(steps * beads)).bench(|| black_box(fire(&[shot], &settings)));
 }

@@ -25,23 +25,15 @@ fn tap(system: &System, speed_m_s: f64) -> Rest {
 
 /// Pushed by the paper's spring, or free.
 fn bench(bencher: Bencher<'_, '_>, push: Push, speed_m_s: f64) {
-    let chain = Chain {
-        push,
-        ..row(40, 1.0, vec![hertz(), viscoelastic(), cubic()])
-    };
+    let chain = Chain { push, ..row(40, 1.0, vec![hertz(), viscoelastic(), cubic()]) };
     let system = System::new(&chain).unwrap();
     let steps = tap(&system, speed_m_s).steps;
-    bencher
-        .counter(ItemsCount::new(steps))
-        .bench(|| black_box(tap(&system, speed_m_s)));
+    bencher.counter(ItemsCount::new(steps)).bench(|| black_box(tap(&system, speed_m_s)));
 }
 
 #[divan::bench(args = [0.18, 1.0])]
 fn until_rest_under_a_push(bencher: Bencher<'_, '_>, speed_m_s: f64) {
-    let push = Push::Spring {
-        force_n: 0.24,
-        stiffness_n_m: 100.0,
-    };
+    let push = Push::Spring { force_n: 0.24, stiffness_n_m: 100.0 };
     bench(bencher, push, speed_m_s);
 }
 

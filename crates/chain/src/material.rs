@@ -91,16 +91,9 @@ impl Pair {
     /// time in s, as unlike bodies share one [Goldobin2015].
     #[must_use]
     pub fn mean_relaxation_time_s(&self, of: fn(&Material) -> f64) -> f64 {
-        let (left, right) = (
-            self.left.compliance_per_pa(),
-            self.right.compliance_per_pa(),
-        );
+        let (left, right) = (self.left.compliance_per_pa(), self.right.compliance_per_pa());
         let weigh = |material: &Material, compliance: f64| {
-            if compliance == 0.0 {
-                0.0
-            } else {
-                of(material) * compliance
-            }
+            if compliance == 0.0 { 0.0 } else { of(material) * compliance }
         };
         (weigh(&self.left, left) + weigh(&self.right, right)) / (left + right)
     }

@@ -34,23 +34,16 @@ impl Motion {
     #[must_use]
     pub fn at(&self, time_s: f64) -> (f64, f64) {
         match self {
-            Self::Sine {
-                amplitude_m,
-                frequency_hz,
-            } => {
+            Self::Sine { amplitude_m, frequency_hz } => {
                 let omega = TAU * frequency_hz;
                 let (sin, cos) = (omega * time_s).sin_cos();
                 (amplitude_m * sin, amplitude_m * omega * cos)
             }
-            Self::Pulse {
-                amplitude_m,
-                duration_s,
-            } if time_s < *duration_s => push_and_back(*amplitude_m, *duration_s, time_s),
+            Self::Pulse { amplitude_m, duration_s } if time_s < *duration_s => {
+                push_and_back(*amplitude_m, *duration_s, time_s)
+            }
             Self::Pulse { .. } => (0.0, 0.0),
-            Self::Table {
-                times_s,
-                positions_m,
-            } => interpolate(times_s, positions_m, time_s),
+            Self::Table { times_s, positions_m } => interpolate(times_s, positions_m, time_s),
         }
     }
 
@@ -80,24 +73,15 @@ impl Motion {
             false => Err(format!("{what} = {value} must be positive and finite")),
         };
         match self {
-            Self::Sine {
-                amplitude_m,
-                frequency_hz,
-            } => {
+            Self::Sine { amplitude_m, frequency_hz } => {
                 positive("amplitude in m", amplitude_m.abs())?;
                 positive("frequency in Hz", *frequency_hz)
             }
-            Self::Pulse {
-                amplitude_m,
-                duration_s,
-            } => {
+            Self::Pulse { amplitude_m, duration_s } => {
                 positive("amplitude in m", amplitude_m.abs())?;
                 positive("duration in s", *duration_s)
             }
-            Self::Table {
-                times_s,
-                positions_m,
-            } => check_table(times_s, positions_m),
+            Self::Table { times_s, positions_m } => check_table(times_s, positions_m),
         }
     }
 
@@ -115,18 +99,9 @@ impl Motion {
     #[must_use]
     pub fn largest_speed_m_s(&self) -> f64 {
         match self {
-            Self::Sine {
-                amplitude_m,
-                frequency_hz,
-            } => TAU * (amplitude_m * frequency_hz).abs(),
-            Self::Pulse {
-                amplitude_m,
-                duration_s,
-            } => PI * (amplitude_m / duration_s).abs(),
-            Self::Table {
-                times_s,
-                positions_m,
-            } => times_s
+            Self::Sine { amplitude_m, frequency_hz } => TAU * (amplitude_m * frequency_hz).abs(),
+            Self::Pulse { amplitude_m, duration_s } => PI * (amplitude_m / duration_s).abs(),
+            Self::Table { times_s, positions_m } => times_s
                 .windows(2)
                 .zip(positions_m.windows(2))
                 .map(|(t, x)| ((x[1] - x[0]) / (t[1] - t[0])).abs())
@@ -142,18 +117,11 @@ fn check_table(times_s: &[f64], positions_m: &[f64]) -> Result<(), String> {
             "{times} times and {positions} positions; two or more of each are needed"
         ));
     }
-    if times_s
-        .iter()
-        .chain(positions_m)
-        .any(|value| !value.is_finite())
-    {
+    if times_s.iter().chain(positions_m).any(|value| !value.is_finite()) {
         return Err("a time or position is not finite".into());
     }
     match times_s.windows(2).find(|pair| pair[1] <= pair[0]) {
-        Some(pair) => Err(format!(
-            "times must increase, but {} s follows {} s",
-            pair[1], pair[0]
-        )),
+        Some(pair) => Err(format!("times must increase, but {} s follows {} s", pair[1], pair[0])),
         None => Ok(()),
     }
 }
@@ -161,10 +129,7 @@ fn check_table(times_s: &[f64], positions_m: &[f64]) -> Result<(), String> {
 fn push_and_back(amplitude_m: f64, duration_s: f64, time_s: f64) -> (f64, f64) {
     let omega = TAU / duration_s;
     let (sin, cos) = (omega * time_s).sin_cos();
-    (
-        0.5 * amplitude_m * (1.0 - cos),
-        0.5 * amplitude_m * omega * sin,
-    )
+    (0.5 * amplitude_m * (1.0 - cos), 0.5 * amplitude_m * omega * sin)
 }
 
 /// Cubic Hermite interpolation with three-point slopes, flat outside.
@@ -183,10 +148,7 @@ fn interpolate(times: &[f64], positions: &[f64], time: f64) -> (f64, f64) {
     let h = times[right] - times[left];
     let s = (time - times[left]) / h;
     let (x0, x1) = (positions[left] - first, positions[right] - first);
-    let (d0, d1) = (
-        h * slope(times, positions, left),
-        h * slope(times, positions, right),
-    );
+    let (d0, d1) = (h * slope(times, positions, left), h * slope(times, positions, right));
     let (c2, c3) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
     let position = x0 + s * (d0 + s * (c2 + s * c3));
     (position, (d0 + s * (2.0 * c2 + 3.0 * s * c3)) / h)

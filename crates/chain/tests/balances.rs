@@ -8,20 +8,13 @@ use hertzchain_chain::wave::{DormandPrince, Limits, run};
 use hertzchain_chain::*;
 
 fn moving(bead: usize, velocity_m_s: f64) -> Initial {
-    Initial {
-        bead,
-        displacement_m: 0.0,
-        velocity_m_s,
-    }
+    Initial { bead, displacement_m: 0.0, velocity_m_s }
 }
 
 #[test]
 fn momentum_is_kept_where_nothing_holds_the_chain() {
     let laws = vec![hertz(), viscoelastic(), cubic()];
-    let chain = Chain {
-        far: FarEnd::Free,
-        ..row(20, 0.7, laws)
-    };
+    let chain = Chain { far: FarEnd::Free, ..row(20, 0.7, laws) };
     let outcome = run_for(&chain, 1e-8, 1e-3);
     let momentum: f64 = outcome.velocity_m_s[..21].iter().sum();
     // Only the rounding of some 1e4 sums is left.
@@ -43,23 +36,12 @@ fn two_equal_pulses_that_meet_leave_the_middle_at_rest() {
     for bead in 1..=20 {
         // The two sides are summed in opposite order: rounding, amplified by
         // the openings that it delays.
-        assert!(
-            (velocity[bead] + velocity[42 - bead]).abs() < 1e-9,
-            "bead {bead}"
-        );
+        assert!((velocity[bead] + velocity[42 - bead]).abs() < 1e-9, "bead {bead}");
     }
     assert!(velocity[21].abs() < 1e-9);
-    close(
-        velocity[41],
-        reference("head-on", "last_bead_velocity"),
-        1e-8,
-    );
+    close(velocity[41], reference("head-on", "last_bead_velocity"), 1e-8);
     let peak = middle.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
-    close(
-        peak,
-        reference("head-on", "middle_contact_peak_force"),
-        1e-8,
-    );
+    close(peak, reference("head-on", "middle_contact_peak_force"), 1e-8);
 }
 
 /// The same shot with mass, length and time multiplied.
@@ -69,30 +51,18 @@ fn a_shot_scaled_in_mass_length_and_time_gives_the_scaled_result() {
     let (k, a, b) = (8.8e9, 3.4e-7, 77.0);
     let shot = |mass: f64, length: f64, time: f64| {
         let laws = vec![
-            law(ElasticHertz {
-                stiffness: Some(k * mass / (length.sqrt() * time * time)),
-            }),
+            law(ElasticHertz { stiffness: Some(k * mass / (length.sqrt() * time * time)) }),
             law(DampingViscoelastic {
                 relaxation_time_s: Some(a * time),
                 stiffness: Some(k * mass / (length.sqrt() * time * time)),
             }),
-            law(DampingCubic {
-                coefficient_kg_s_m2: b * mass * time / (length * length),
-            }),
+            law(DampingCubic { coefficient_kg_s_m2: b * mass * time / (length * length) }),
         ];
-        let bead = Bead {
-            mass_kg: BALL.mass_kg * mass,
-            ..BALL
-        };
+        let bead = Bead { mass_kg: BALL.mass_kg * mass, ..BALL };
         let chain = Chain {
             beads: vec![bead; 20],
-            start: Start::Striker {
-                bead,
-                speed_m_s: 0.5 * length / time,
-            },
-            push: Push::Constant {
-                force_n: 0.3 * mass * length / (time * time),
-            },
+            start: Start::Striker { bead, speed_m_s: 0.5 * length / time },
+            push: Push::Constant { force_n: 0.3 * mass * length / (time * time) },
             incline_rad: 0.01,
             gravity_m_s2: 9.81 * length / (time * time),
             ..row(20, 1.0, laws)
@@ -103,27 +73,16 @@ fn a_shot_scaled_in_mass_length_and_time_gives_the_scaled_result() {
     let force = mass * length / (time * time);
     // Rounding shifts steps a little: errors of two runs at 1e-9.
     close(scaled.tof_incident_s(), plain.tof_incident_s() * time, 1e-8);
-    close(
-        scaled.tof_reflected_s().unwrap(),
-        plain.tof_reflected_s().unwrap() * time,
-        1e-8,
-    );
+    close(scaled.tof_reflected_s().unwrap(), plain.tof_reflected_s().unwrap() * time, 1e-8);
     close(scaled.wall.value, plain.wall.value * force, 1e-8);
 }
 
 fn linear_ring(beads: usize, stiffness: f64, force_n: f64) -> Chain {
-    let laws = vec![law(ElasticPower {
-        stiffness,
-        exponent: 1.0,
-    })];
+    let laws = vec![law(ElasticPower { stiffness, exponent: 1.0 })];
     Chain {
         start: Start::Free,
         far: FarEnd::Periodic { force_n },
-        sections: vec![Section {
-            contacts: 0..=beads,
-            laws,
-            material: None,
-        }],
+        sections: vec![Section { contacts: 0..=beads, laws, material: None }],
         ..unit_row(beads, 1.0, FarEnd::Free)
     }
 }
@@ -137,15 +96,9 @@ fn a_linear_ring_swings_in_its_exact_normal_modes() {
         displacement_m: amplitude * angle(bead).cos(),
         velocity_m_s: 0.0,
     });
-    let chain = Chain {
-        initial: initial.collect(),
-        ..linear_ring(beads, 4.0, 1.0)
-    };
+    let chain = Chain { initial: initial.collect(), ..linear_ring(beads, 4.0, 1.0) };
     let outcome = run_for(&chain, 1e-11, duration);
-    let uniform = UniformChain {
-        contact_stiffness_n_m: 4.0,
-        mass_kg: 1.0,
-    };
+    let uniform = UniformChain { contact_stiffness_n_m: 4.0, mass_kg: 1.0 };
     let omega = uniform.angular_frequency_rad_s(std::f64::consts::TAU * mode as f64 / beads as f64);
     for bead in 1..=beads {
         let exact = amplitude * angle(bead).cos() * (omega * duration).cos();
@@ -156,14 +109,9 @@ fn a_linear_ring_swings_in_its_exact_normal_modes() {
 
 #[test]
 fn a_linear_dimer_row_swings_in_the_modes_of_the_eigenproblem() {
-    let masses: Vec<f64> = (0..10)
-        .map(|i| if i % 2 == 0 { 1.0 } else { 2.5 })
-        .collect();
+    let masses: Vec<f64> = (0..10).map(|i| if i % 2 == 0 { 1.0 } else { 2.5 }).collect();
     let modes = normal_modes(&masses, &[1.0; 10], Ends::FreeFixed).unwrap();
-    let laws = vec![law(ElasticPower {
-        stiffness: 1.0,
-        exponent: 1.0,
-    })];
+    let laws = vec![law(ElasticPower { stiffness: 1.0, exponent: 1.0 })];
     for mode in [&modes[2], &modes[9]] {
         let shape = &mode.shape;
         let initial = (1..=10).map(|bead| Initial {
@@ -171,29 +119,14 @@ fn a_linear_dimer_row_swings_in_the_modes_of_the_eigenproblem() {
             displacement_m: 1e-3 * shape[bead - 1],
             velocity_m_s: 0.0,
         });
-        let bead = |mass_kg: f64| Bead {
-            radius_m: 1.0,
-            mass_kg,
-            material: Material::RIGID,
-        };
+        let bead = |mass_kg: f64| Bead { radius_m: 1.0, mass_kg, material: Material::RIGID };
         let chain = Chain {
             beads: masses.iter().map(|mass| bead(*mass)).collect(),
             start: Start::Free,
             initial: initial.collect(),
             push: Push::Constant { force_n: 1.0 },
-            sections: vec![Section {
-                contacts: 0..=10,
-                laws: laws.clone(),
-                material: None,
-            }],
-            ..unit_row(
-                10,
-                1.0,
-                FarEnd::HalfBead {
-                    radius_m: 1.0,
-                    material: Material::RIGID,
-                },
-            )
+            sections: vec![Section { contacts: 0..=10, laws: laws.clone(), material: None }],
+            ..unit_row(10, 1.0, FarEnd::HalfBead { radius_m: 1.0, material: Material::RIGID })
         };
         let outcome = run_for(&chain, 1e-11, 15.0);
         let phase = (mode.angular_frequency_rad_s * 15.0).cos();
@@ -209,52 +142,20 @@ fn a_linear_dimer_row_swings_in_the_modes_of_the_eigenproblem() {
 fn a_driven_chain_matches_an_independent_integration() {
     for (case, exponent) in [("driven/linear", 1.0), ("driven/hertz", 1.5)] {
         let (amplitude, omega) = (0.1, 1.0);
-        let laws = vec![law(ElasticPower {
-            stiffness: 1.0,
-            exponent,
-        })];
-        let bead = Bead {
-            radius_m: 1.0,
-            mass_kg: 1.0,
-            material: Material::RIGID,
-        };
-        let motion = Motion::Sine {
-            amplitude_m: amplitude,
-            frequency_hz: omega / std::f64::consts::TAU,
-        };
+        let laws = vec![law(ElasticPower { stiffness: 1.0, exponent })];
+        let bead = Bead { radius_m: 1.0, mass_kg: 1.0, material: Material::RIGID };
+        let motion =
+            Motion::Sine { amplitude_m: amplitude, frequency_hz: omega / std::f64::consts::TAU };
         let chain = Chain {
             start: Start::Driven { bead, motion },
             push: Push::Constant { force_n: 1.0 },
-            sections: vec![Section {
-                contacts: 0..=10,
-                laws,
-                material: None,
-            }],
-            ..unit_row(
-                10,
-                1.0,
-                FarEnd::HalfBead {
-                    radius_m: 1.0,
-                    material: Material::RIGID,
-                },
-            )
+            sections: vec![Section { contacts: 0..=10, laws, material: None }],
+            ..unit_row(10, 1.0, FarEnd::HalfBead { radius_m: 1.0, material: Material::RIGID })
         };
         let outcome = run_for(&chain, 1e-11, 20.0);
-        close(
-            outcome.displacement_m[1],
-            reference(case, "bead_1_position_at_20"),
-            1e-7,
-        );
-        close(
-            outcome.displacement_m[5],
-            reference(case, "bead_5_position_at_20"),
-            1e-8,
-        );
-        close(
-            outcome.velocity_m_s[10],
-            reference(case, "bead_10_velocity_at_20"),
-            1e-8,
-        );
+        close(outcome.displacement_m[1], reference(case, "bead_1_position_at_20"), 1e-7);
+        close(outcome.displacement_m[5], reference(case, "bead_5_position_at_20"), 1e-8);
+        close(outcome.velocity_m_s[10], reference(case, "bead_10_velocity_at_20"), 1e-8);
         let budget = outcome.budget.unwrap();
         assert!(budget.driven_j != 0.0 && budget.relative_residual().abs() < 1e-8);
     }
@@ -278,69 +179,25 @@ fn a_ring_matches_an_independent_integration() {
 
 #[test]
 fn a_spring_that_hardly_gives_acts_as_a_constant_push_and_a_stiff_one_does_not() {
-    let tof = |push| {
-        shoot(
-            &Chain {
-                push,
-                ..row(40, 0.5, vec![hertz()])
-            },
-            1e-9,
-        )
-        .0
-        .tof_incident_s()
-    };
+    let tof = |push| shoot(&Chain { push, ..row(40, 0.5, vec![hertz()]) }, 1e-9).0.tof_incident_s();
     let constant = tof(Push::Constant { force_n: 0.24 });
-    let soft = tof(Push::Spring {
-        force_n: 0.24,
-        stiffness_n_m: 1e-3,
-    });
-    let stiff = tof(Push::Spring {
-        force_n: 0.24,
-        stiffness_n_m: 1e6,
-    });
+    let soft = tof(Push::Spring { force_n: 0.24, stiffness_n_m: 1e-3 });
+    let stiff = tof(Push::Spring { force_n: 0.24, stiffness_n_m: 1e6 });
     close(soft, constant, 1e-8);
     assert!((stiff / constant - 1.0).abs() > 1e-6);
 }
 
 #[test]
 fn energy_balances_with_every_end_push_and_incline() {
-    let stop = FarEnd::Stop {
-        radius_m: BALL.radius_m,
-        material: STEEL,
-        mass_kg: 0.05,
-    };
+    let stop = FarEnd::Stop { radius_m: BALL.radius_m, material: STEEL, mass_kg: 0.05 };
     let laws = || vec![hertz(), viscoelastic(), cubic()];
-    let spring = Push::Spring {
-        force_n: 0.5,
-        stiffness_n_m: 5e4,
-    };
+    let spring = Push::Spring { force_n: 0.5, stiffness_n_m: 5e4 };
     let base = row(15, 0.8, laws());
     let chains = [
-        Chain {
-            far: stop,
-            push: spring,
-            incline_rad: 0.3,
-            ..base.clone()
-        },
-        Chain {
-            far: FarEnd::Plane { material: STEEL },
-            incline_rad: 1.57,
-            ..base.clone()
-        },
-        Chain {
-            tension: Tension::Clipped,
-            push: spring,
-            far: stop,
-            ..base.clone()
-        },
-        Chain {
-            far: FarEnd::Free,
-            gaps: vec![Gap {
-                contact: 4,
-                gap_m: 3e-5,
-            }],
-            ..base.clone()
-        },
+        Chain { far: stop, push: spring, incline_rad: 0.3, ..base.clone() },
+        Chain { far: FarEnd::Plane { material: STEEL }, incline_rad: 1.57, ..base.clone() },
+        Chain { tension: Tension::Clipped, push: spring, far: stop, ..base.clone() },
+        Chain { far: FarEnd::Free, gaps: vec![Gap { contact: 4, gap_m: 3e-5 }], ..base.clone() },
     ];
     for chain in chains {
         let outcome = run_for(&chain, 5e-12, 2e-3);
@@ -355,11 +212,7 @@ fn a_hanging_bead_swings_with_the_period_of_a_pendulum() {
         start: Start::Free,
         far: FarEnd::Free,
         suspension_m: Some(0.1),
-        initial: vec![Initial {
-            bead: 1,
-            displacement_m: -0.02,
-            velocity_m_s: 0.0,
-        }],
+        initial: vec![Initial { bead: 1, displacement_m: -0.02, velocity_m_s: 0.0 }],
         ..row(1, 1.0, vec![hertz()])
     };
     let omega = (9.80665_f64 / 0.1).sqrt();
@@ -372,10 +225,7 @@ fn a_hanging_bead_swings_with_the_period_of_a_pendulum() {
 fn a_gap_delays_the_wall_by_the_time_its_bead_needs_to_cross() {
     let wall = |gap_m| {
         let gaps = vec![Gap { contact: 40, gap_m }];
-        let chain = Chain {
-            gaps,
-            ..row(40, 0.5, vec![hertz()])
-        };
+        let chain = Chain { gaps, ..row(40, 0.5, vec![hertz()]) };
         let system = System::new(&chain).unwrap();
         let mut passages = Passages::new(7, 40, true);
         let method = DormandPrince { tolerance: 1e-9 };

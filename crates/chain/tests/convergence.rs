@@ -39,12 +39,7 @@ fn smooth() -> Chain {
 fn error(chain: &Chain, method: &dyn Method, duration: f64, exact: &[f64]) -> f64 {
     let system = System::new(chain).unwrap();
     let outcome = run(&system, method, Limits::until(duration), &mut []).unwrap();
-    outcome
-        .velocity_m_s
-        .iter()
-        .zip(exact)
-        .map(|(v, e)| (v - e).abs())
-        .fold(0.0, f64::max)
+    outcome.velocity_m_s.iter().zip(exact).map(|(v, e)| (v - e).abs()).fold(0.0, f64::max)
 }
 
 /// Slope of log error against log step over two halvings.
@@ -61,10 +56,7 @@ fn mean_order(chain: &Chain, duration: f64, method: &dyn Fn(f64) -> Box<dyn Meth
     let exact = run_for(chain, 1e-13, duration).velocity_m_s;
     let at = |halving: i32| {
         let step = 1e-6 * 0.5_f64.powi(halving);
-        (
-            f64::from(-halving),
-            error(chain, &*method(step), duration, &exact).log2(),
-        )
+        (f64::from(-halving), error(chain, &*method(step), duration, &exact).log2())
     };
     let points: Vec<(f64, f64)> = (0..=8).map(at).collect();
     let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / 9.0;
@@ -90,10 +82,7 @@ fn every_method_has_its_order_where_nothing_opens() {
 #[test]
 fn fixed_steps_lose_order_on_impact_and_located_changes_keep_the_accuracy() {
     let laws = || vec![hertz(), viscoelastic(), cubic()];
-    let chain = Chain {
-        far: FarEnd::Free,
-        ..row(8, 0.5, laws())
-    };
+    let chain = Chain { far: FarEnd::Free, ..row(8, 0.5, laws()) };
     let duration = 2e-4;
     let order = |method: &dyn Fn(f64) -> Box<dyn Method>| mean_order(&chain, duration, method);
     let rk4 = order(&|step_s| Box::new(Rk4 { step_s }));
@@ -141,10 +130,7 @@ fn force_passes_per_shot_are_no_more_than_pinned() {
         let method = DormandPrince { tolerance };
         let outcome = run(&system, &method, Limits::until(1.0), &mut [&mut passages]).unwrap();
         let passes = outcome.work.force_passes;
-        assert!(
-            passes <= most && passes > most / 2,
-            "{tolerance:e}: {passes}, pinned {most}"
-        );
+        assert!(passes <= most && passes > most / 2, "{tolerance:e}: {passes}, pinned {most}");
     }
 }
 
@@ -152,52 +138,24 @@ fn force_passes_per_shot_are_no_more_than_pinned() {
 fn a_tolerance_below_rounding_is_refused() {
     let system = System::new(&row(5, 0.5, vec![hertz()])).unwrap();
     let method = DormandPrince { tolerance: 1e-22 };
-    let error = run(&system, &method, Limits::until(1e-3), &mut [])
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.contains("cannot be reached") && error.contains("5e-15"),
-        "{error}"
-    );
+    let error = run(&system, &method, Limits::until(1e-3), &mut []).unwrap_err().to_string();
+    assert!(error.contains("cannot be reached") && error.contains("5e-15"), "{error}");
 }
 
 /// A dashpot a hundred million times too strong in one contact only.
 #[test]
 fn a_shot_that_cannot_be_computed_names_the_time_and_the_contact() {
-    let stiff = laws::law(laws::DampingLinear {
-        coefficient_n_s_m: 1e10,
-    });
+    let stiff = laws::law(laws::DampingLinear { coefficient_n_s_m: 1e10 });
     let mut chain = row(5, 0.5, vec![hertz()]);
     chain.sections = vec![
-        Section {
-            contacts: 0..=2,
-            laws: vec![hertz()],
-            material: None,
-        },
-        Section {
-            contacts: 3..=3,
-            laws: vec![hertz(), stiff],
-            material: None,
-        },
-        Section {
-            contacts: 4..=5,
-            laws: vec![hertz()],
-            material: None,
-        },
+        Section { contacts: 0..=2, laws: vec![hertz()], material: None },
+        Section { contacts: 3..=3, laws: vec![hertz(), stiff], material: None },
+        Section { contacts: 4..=5, laws: vec![hertz()], material: None },
     ];
     let system = System::new(&chain).unwrap();
-    let limits = Limits {
-        force_passes: Some(20_000),
-        ..Limits::until(1e-3)
-    };
+    let limits = Limits { force_passes: Some(20_000), ..Limits::until(1e-3) };
     let error = run(&system, &DormandPrince { tolerance: 1e-9 }, limits, &mut []).unwrap_err();
     let text = error.to_string();
-    assert!(
-        text.contains("gave up at t = ") || text.contains("cannot reach"),
-        "{text}"
-    );
-    assert!(
-        text.contains("contact 3") || text.contains("contact 4"),
-        "{text}"
-    );
+    assert!(text.contains("gave up at t = ") || text.contains("cannot reach"), "{text}");
+    assert!(text.contains("contact 3") || text.contains("contact 4"), "{text}");
 }

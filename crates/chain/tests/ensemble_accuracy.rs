@@ -29,12 +29,8 @@ fn converged(shot: &RandomShot, system: &System) -> Option<([f64; 2], f64)> {
 fn error(shot: &RandomShot, system: &System, accuracy: f64) -> Option<f64> {
     let (exact, time_s) = converged(shot, system)?;
     let (step, openings) = step_for(accuracy);
-    let settings = Settings {
-        sensors: shot.sensors(),
-        end: End::Reflected,
-        openings,
-        ..settings(1)
-    };
+    let settings =
+        Settings { sensors: shot.sensors(), end: End::Reflected, openings, ..settings(1) };
     let system = std::slice::from_ref(system);
     let flown = fire_all(system, (step, 1.1 * time_s), &settings).remove(0);
     let passage = flown.ok().and_then(|flown| passage(&flown));
@@ -140,10 +136,7 @@ fn single_precision_moves_times_of_flight_by_less_than_1e_5_in_nine_tenths_of_ge
         let [double, single] = PRECISIONS.map(|precision| {
             let system = std::slice::from_ref(&system);
             let flown = fire_all_in(precision, system, (0.1, duration_s), &settings).remove(0);
-            flown
-                .ok()
-                .and_then(|flown| passage(&flown))
-                .map(|p| tofs(&p))
+            flown.ok().and_then(|flown| passage(&flown)).map(|p| tofs(&p))
         });
         let (Some(double), Some(single)) = (double, single) else {
             assert_eq!(double.is_some(), single.is_some());

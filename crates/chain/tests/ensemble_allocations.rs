@@ -25,32 +25,17 @@ fn allocated(
 }
 
 fn chains() -> Vec<Chain> {
-    let power = law(DampingPower {
-        coefficient: 1.0,
-        rate_exponent: 1.3,
-        overlap_exponent: 0.2,
-    });
+    let power = law(DampingPower { coefficient: 1.0, rate_exponent: 1.3, overlap_exponent: 0.2 });
     let dry = row(20, 0.5, vec![hertz(), viscoelastic(), cubic()]);
     vec![
         dry.clone(),
         row(20, 0.5, vec![hertz(), power]),
-        Chain {
-            push: Push::Spring {
-                force_n: 1.0,
-                stiffness_n_m: 1e4,
-            },
-            ..dry
-        },
+        Chain { push: Push::Spring { force_n: 1.0, stiffness_n_m: 1e4 }, ..dry },
     ]
 }
 
 fn until_the_end(sensors: Vec<Sensor>) -> Settings {
-    Settings {
-        sensors,
-        end: End::Duration,
-        openings: true,
-        ..settings(20)
-    }
+    Settings { sensors, end: End::Duration, openings: true, ..settings(20) }
 }
 
 /// One shot alone and full blocks.

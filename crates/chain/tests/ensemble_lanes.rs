@@ -1,9 +1,5 @@
 //! A shot of the ensemble loop knows nothing of its lane and its neighbours.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::common::ensemble::*;
 use crate::common::*;
@@ -32,9 +28,7 @@ fn same(one: &LaneResult, two: &LaneResult, which: impl Fn() -> String) {
 /// Alike rows at different speeds.
 fn rows(count: usize, chain: impl Fn(f64) -> Chain) -> Vec<System> {
     let speed = |i: usize| 0.1 + 0.07 * i as f64;
-    (0..count)
-        .map(|i| System::new(&chain(speed(i))).unwrap())
-        .collect()
+    (0..count).map(|i| System::new(&chain(speed(i))).unwrap()).collect()
 }
 
 /// A kind of chain and its chain for a speed.
@@ -46,12 +40,8 @@ fn kinds() -> Vec<Kind> {
         ("fused laws", |v| row(12, v, dry())),
         ("fused laws, each lane with its own numbers", |v| {
             let coefficient_kg_s_m2 = 77.0 * (1.0 + v);
-            let hertz = law(ElasticHertz {
-                stiffness: Some(9e9 * (1.0 + v)),
-            });
-            let cubic = law(DampingCubic {
-                coefficient_kg_s_m2,
-            });
+            let hertz = law(ElasticHertz { stiffness: Some(9e9 * (1.0 + v)) });
+            let cubic = law(DampingCubic { coefficient_kg_s_m2 });
             row(12, v, vec![hertz, viscoelastic(), cubic])
         }),
         ("unfused laws", |v| row(11, v, law_by_law())),
@@ -62,38 +52,22 @@ fn kinds() -> Vec<Kind> {
         }),
         ("clipped tension and a gap", |v| Chain {
             tension: Tension::Clipped,
-            gaps: vec![Gap {
-                contact: 5,
-                gap_m: 1e-7,
-            }],
+            gaps: vec![Gap { contact: 5, gap_m: 1e-7 }],
             ..row(12, v, dry())
         }),
-        ("preload", |v| Chain {
-            push: Push::Constant { force_n: 2.0 },
-            ..row(40, v, dry())
-        }),
+        ("preload", |v| Chain { push: Push::Constant { force_n: 2.0 }, ..row(40, v, dry()) }),
         ("preload on unlike beads", |v| Chain {
             push: Push::Constant { force_n: 3.0 },
             beads: (0..60).map(|i| shrunk(0.99_f64.powi(i))).collect(),
             ..row(60, 4.0 * v * v, dry())
         }),
         ("a spring", |v| Chain {
-            push: Push::Spring {
-                force_n: 2.0,
-                stiffness_n_m: 1e5,
-            },
+            push: Push::Spring { force_n: 2.0, stiffness_n_m: 1e5 },
             ..row(20, v, dry())
         }),
-        ("an incline", |v| Chain {
-            incline_rad: 0.3,
-            ..row(12, v, dry())
-        }),
+        ("an incline", |v| Chain { incline_rad: 0.3, ..row(12, v, dry()) }),
         ("a stop", |v| Chain {
-            far: FarEnd::Stop {
-                radius_m: BALL.radius_m,
-                material: STEEL,
-                mass_kg: 0.5,
-            },
+            far: FarEnd::Stop { radius_m: BALL.radius_m, material: STEEL, mass_kg: 0.5 },
             ..row(12, v, dry())
         }),
     ]
@@ -101,35 +75,21 @@ fn kinds() -> Vec<Kind> {
 
 /// A ball of another radius.
 fn shrunk(factor: f64) -> Bead {
-    Bead {
-        radius_m: factor * BALL.radius_m,
-        mass_kg: factor.powi(3) * BALL.mass_kg,
-        ..BALL
-    }
+    Bead { radius_m: factor * BALL.radius_m, mass_kg: factor.powi(3) * BALL.mass_kg, ..BALL }
 }
 
 fn law_by_law() -> Vec<Arc<dyn Law>> {
-    let power = law(DampingPower {
-        coefficient: 1.0,
-        rate_exponent: 1.3,
-        overlap_exponent: 0.2,
-    });
+    let power = law(DampingPower { coefficient: 1.0, rate_exponent: 1.3, overlap_exponent: 0.2 });
     vec![hertz(), power]
 }
 
 fn with_memory() -> Vec<Arc<dyn Law>> {
-    vec![law(ElasticPlasticThornton {
-        yield_pressure_pa: 1e9,
-    })]
+    vec![law(ElasticPlasticThornton { yield_pressure_pa: 1e9 })]
 }
 
 /// Three sections, none of which ends where eight bodies do.
 fn sections(beads: usize) -> Vec<Section> {
-    let section = |contacts, laws| Section {
-        contacts,
-        laws,
-        material: None,
-    };
+    let section = |contacts, laws| Section { contacts, laws, material: None };
     vec![
         section(0..=2, dry()),
         section(3..=9, vec![hertz(), viscoelastic()]),
@@ -138,10 +98,7 @@ fn sections(beads: usize) -> Vec<Section> {
 }
 
 fn settings_for(systems: &[System], openings: bool) -> Settings {
-    Settings {
-        openings,
-        ..settings(systems[0].beads())
-    }
+    Settings { openings, ..settings(systems[0].beads()) }
 }
 
 #[test]
@@ -157,9 +114,7 @@ fn every_number_of_shots_gives_the_bits_of_each_shot_alone() {
             let systems = &systems[..count];
             let flown = fire_all_in(precision, systems, (0.1, DURATION_S), &settings);
             for (i, (flown, alone)) in flown.into_iter().zip(&alone).enumerate() {
-                same(&flown.unwrap(), alone, || {
-                    format!("{precision:?}: shot {i} of {count}")
-                });
+                same(&flown.unwrap(), alone, || format!("{precision:?}: shot {i} of {count}"));
             }
         }
     }
@@ -172,10 +127,7 @@ fn every_kind_of_chain_gives_the_same_bits_alone_and_side_by_side_in_any_order()
             let systems = rows(precision.lanes(), chain);
             for set in InstructionSet::available() {
                 for openings in [false, true] {
-                    let settings = Settings {
-                        set,
-                        ..settings_for(&systems, openings)
-                    };
+                    let settings = Settings { set, ..settings_for(&systems, openings) };
                     same_in_any_order(precision, &systems, &settings, kind);
                 }
             }
@@ -205,24 +157,13 @@ fn same_in_any_order(precision: Precision, systems: &[System], settings: &Settin
 
 #[test]
 fn shots_of_other_shapes_in_between_change_no_bits() {
-    let (one, two) = (
-        rows(5, |v| row(12, v, dry())),
-        rows(5, |v| row(9, v, vec![hertz()])),
-    );
+    let (one, two) = (rows(5, |v| row(12, v, dry())), rows(5, |v| row(9, v, vec![hertz()])));
     let settings = settings(9);
-    let mixed: Vec<System> = one
-        .iter()
-        .zip(&two)
-        .flat_map(|(a, b)| [a.clone(), b.clone()])
-        .collect();
-    for (system, flown) in mixed
-        .iter()
-        .zip(fire_all(&mixed, (0.1, DURATION_S), &settings))
-    {
+    let mixed: Vec<System> =
+        one.iter().zip(&two).flat_map(|(a, b)| [a.clone(), b.clone()]).collect();
+    for (system, flown) in mixed.iter().zip(fire_all(&mixed, (0.1, DURATION_S), &settings)) {
         let alone = fire_one(system, (0.1, DURATION_S), &settings);
-        same(&flown.unwrap(), &alone, || {
-            format!("{} beads", system.beads())
-        });
+        same(&flown.unwrap(), &alone, || format!("{} beads", system.beads()));
     }
 }
 
@@ -241,10 +182,7 @@ fn lanes_with_their_own_steps_and_durations_give_the_bits_of_each_shot_alone() {
         })
         .collect();
     for end in [End::Duration, End::Passed, End::Reflected] {
-        let settings = Settings {
-            end,
-            ..settings_for(&systems, true)
-        };
+        let settings = Settings { end, ..settings_for(&systems, true) };
         for (shot, flown) in shots.iter().zip(fire(&shots, &settings)) {
             let alone = fire(std::slice::from_ref(shot), &settings).remove(0);
             same(&flown.unwrap(), &alone.unwrap(), || format!("{end:?}"));
@@ -257,12 +195,7 @@ fn shots_that_no_user_wants_any_more_are_broken_off_within_few_steps() {
     let systems = rows(3, |v| row(12, v, dry()));
     let settings = settings(12);
     for precision in PRECISIONS {
-        let shot = |system| Shot {
-            system,
-            step: 0.1,
-            duration_s: DURATION_S,
-            precision,
-        };
+        let shot = |system| Shot { system, step: 0.1, duration_s: DURATION_S, precision };
         let shots: Vec<Shot<'_>> = systems.iter().map(shot).collect();
         for most in [0, 1, 5] {
             let asked = Cell::new(0);
@@ -285,10 +218,7 @@ const TOO_STIFF: f64 = 1e5;
 
 #[test]
 fn a_shot_that_diverges_is_reported_alone_and_its_neighbours_keep_their_bits() {
-    let settings = Settings {
-        openings: true,
-        ..settings(12)
-    };
+    let settings = Settings { openings: true, ..settings(12) };
     let system = |stiff: bool| {
         let coefficient = if stiff { TOO_STIFF } else { 2.0 };
         System::new(&dashpot(coefficient)).unwrap()
@@ -340,17 +270,13 @@ fn a_shot_that_cannot_be_fired_is_refused_alone() {
 
 #[test]
 fn a_sensor_that_only_some_chains_have_is_refused_only_there() {
-    let systems = [
-        System::new(&row(12, 0.5, dry())).unwrap(),
-        System::new(&row(6, 0.5, dry())).unwrap(),
-    ];
+    let systems =
+        [System::new(&row(12, 0.5, dry())).unwrap(), System::new(&row(6, 0.5, dry())).unwrap()];
     let flown = fire_all(&systems, (0.1, 1e-4), &settings(12));
     assert!(flown[0].is_ok());
     let missing = Sensor::Bead(7);
     assert_eq!(
         flown[1].as_ref().err(),
-        Some(&SolveError::Refused(format!(
-            "the chain has no {missing:?}"
-        )))
+        Some(&SolveError::Refused(format!("the chain has no {missing:?}")))
     );
 }

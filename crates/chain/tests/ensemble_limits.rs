@@ -16,10 +16,7 @@ fn with_gap(gap_m: f64) -> System {
 
 #[test]
 fn a_flight_through_a_long_gap_is_given_up_for_little_memory() {
-    let settings = Settings {
-        openings: true,
-        ..settings(20)
-    };
+    let settings = Settings { openings: true, ..settings(20) };
     let systems: Vec<System> = [10.0, 1e-3, 3.0].map(with_gap).into_iter().collect();
     let took = measure(|| {
         // Twenty seconds: forty million steps.
@@ -37,8 +34,5 @@ fn a_flight_through_a_long_gap_is_given_up_for_little_memory() {
     // A lane that is given up changes no bit of its neighbours.
     let alone = fire_one(&systems[1], (0.036, 20.0), &settings);
     let beside = fire_all(&systems, (0.036, 20.0), &settings).remove(1);
-    assert_eq!(
-        alone.signals[1].maxima(),
-        beside.unwrap().signals[1].maxima()
-    );
+    assert_eq!(alone.signals[1].maxima(), beside.unwrap().signals[1].maxima());
 }

@@ -28,9 +28,7 @@ fn error(chain: &Chain, (step, openings): (f64, bool)) -> f64 {
     };
     let flown = fire_one(&system, (step, 1.1 * outcome.time_s), &settings);
     let tofs = tofs(&passage(&flown).unwrap());
-    (tofs[0] / exact[0] - 1.0)
-        .abs()
-        .max((tofs[1] / exact[1] - 1.0).abs())
+    (tofs[0] / exact[0] - 1.0).abs().max((tofs[1] / exact[1] - 1.0).abs())
 }
 
 /// In short rows the striker lets go while the sensor is at its peak: samples
@@ -52,10 +50,7 @@ fn an_opening_near_a_peak_does_not_shift_it() {
 fn following_openings_does_no_harm_where_tension_is_clipped() {
     for beads in [8, 13, 20, 40] {
         for laws in [dry(), vec![hertz(), viscoelastic()], vec![hertz()]] {
-            let chain = Chain {
-                tension: Tension::Clipped,
-                ..row(beads, 0.5, laws)
-            };
+            let chain = Chain { tension: Tension::Clipped, ..row(beads, 0.5, laws) };
             let (with, without) = (error(&chain, (0.05, true)), error(&chain, (0.05, false)));
             // The same where forces that pull are cut; smaller in a Hertz chain.
             assert!(with <= without, "{beads} beads: {with:e} {without:e}");
@@ -66,11 +61,7 @@ fn following_openings_does_no_harm_where_tension_is_clipped() {
 /// Velocities of a ring after some time, and those of the one-step loop.
 #[test]
 fn openings_of_a_rings_last_contact_move_bead_1() {
-    let moving = Initial {
-        bead: 8,
-        displacement_m: 0.0,
-        velocity_m_s: 0.2,
-    };
+    let moving = Initial { bead: 8, displacement_m: 0.0, velocity_m_s: 0.2 };
     let ring = Chain {
         start: Start::Free,
         far: FarEnd::Periodic { force_n: 0.0 },
@@ -79,12 +70,7 @@ fn openings_of_a_rings_last_contact_move_bead_1() {
     };
     let system = System::new(&ring).unwrap();
     let [with, without] = [true, false].map(|openings| {
-        let settings = Settings {
-            sensors: vec![],
-            end: End::Duration,
-            openings,
-            ..settings(1)
-        };
+        let settings = Settings { sensors: vec![], end: End::Duration, openings, ..settings(1) };
         let flown = fire_one(&system, (0.05, 2e-4), &settings);
         let outcome = run_for(&ring, 1e-11, flown.time_s);
         let pairs = flown.velocity_m_s.iter().zip(&outcome.velocity_m_s);

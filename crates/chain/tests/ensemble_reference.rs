@@ -20,11 +20,7 @@ fn wet(young: f64, eta: (f64, f64), nu: (f64, f64), speed: f64) -> Chain {
         shear_viscosity_pa_s: eta.0 * speed.powf(eta.1),
         bulk_viscosity_pa_s: eta.0 * speed.powf(eta.1),
     };
-    let section = |contacts, laws, material| Section {
-        contacts,
-        laws,
-        material,
-    };
+    let section = |contacts, laws, material| Section { contacts, laws, material };
     Chain {
         sections: vec![
             section(0..=6, dry(), None),
@@ -51,19 +47,12 @@ fn cases() -> Vec<(&'static str, Chain)> {
     let loaded = |chain: Chain| Chain {
         push: Push::Constant { force_n: 0.24 },
         incline_rad: 0.5_f64.to_radians(),
-        far: FarEnd::Stop {
-            radius_m: BALL.radius_m,
-            material: STEEL,
-            mass_kg: 4.5,
-        },
+        far: FarEnd::Stop { radius_m: BALL.radius_m, material: STEEL, mass_kg: 4.5 },
         ..chain
     };
     vec![
         ("rig/hertz_1", row(40, 1.0, vec![hertz()])),
-        (
-            "rig/hertz_viscoelastic_0.5",
-            row(40, 0.5, vec![hertz(), viscoelastic()]),
-        ),
+        ("rig/hertz_viscoelastic_0.5", row(40, 0.5, vec![hertz(), viscoelastic()])),
         ("rig/dry_0.075", row(40, 0.075, dry())),
         ("rig/dry_0.5", row(40, 0.5, dry())),
         ("rig/dry_1.0", row(40, 1.0, dry())),
@@ -79,10 +68,7 @@ fn cases() -> Vec<(&'static str, Chain)> {
 /// Relative errors of both times of flight of a case.
 fn errors(case: &str, chain: &Chain, step: f64, openings: bool) -> [f64; 2] {
     let system = System::new(chain).unwrap();
-    let settings = Settings {
-        openings,
-        ..settings(40)
-    };
+    let settings = Settings { openings, ..settings(40) };
     let flown = fire_one(&system, (step, 1e-2), &settings);
     let [incident, reflected] = tofs(&passage(&flown).unwrap());
     [
@@ -96,10 +82,7 @@ fn long_steps_give_times_of_flight_within_1_5e_5_of_an_independent_integration()
     for (case, chain) in cases() {
         let errors = errors(case, &chain, 0.14, false);
         // The step's own error: 1e-5 over the paper's speeds.
-        assert!(
-            errors[0] < 1.5e-5 && errors[1] < 1.5e-5,
-            "{case}: {errors:?}"
-        );
+        assert!(errors[0] < 1.5e-5 && errors[1] < 1.5e-5, "{case}: {errors:?}");
     }
 }
 
@@ -116,11 +99,7 @@ fn short_steps_that_follow_openings_are_within_2e_7_of_an_independent_integratio
 fn left_behind(chain: &Chain, precision: Precision, openings: bool) -> f64 {
     let system = System::new(chain).unwrap();
     let times = |end| {
-        let settings = Settings {
-            end,
-            openings,
-            ..settings(40)
-        };
+        let settings = Settings { end, openings, ..settings(40) };
         let step = if openings { 0.04 } else { 0.16 };
         tofs(&passage(&fire_one_in(precision, &system, (step, 1e-2), &settings)).unwrap())
     };

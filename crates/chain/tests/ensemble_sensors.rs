@@ -59,20 +59,15 @@ fn both(
     let flown = fire_all(&systems, (0.03, duration_s), &settings);
     let flown = flown.into_iter().next_back().unwrap().unwrap();
     let mut one_step: Vec<Signal> = sensors.iter().map(|sensor| Signal::new(*sensor)).collect();
-    let mut observers: Vec<&mut dyn Observer> = one_step
-        .iter_mut()
-        .map(|signal| signal as &mut dyn Observer)
-        .collect();
+    let mut observers: Vec<&mut dyn Observer> =
+        one_step.iter_mut().map(|signal| signal as &mut dyn Observer).collect();
     let method = DormandPrince { tolerance: 1e-11 };
     let limits = Limits::until(flown.time_s);
     let outcome = run(&system, &method, limits, &mut observers).unwrap();
     let pairs = flown.velocity_m_s.iter().zip(&outcome.velocity_m_s);
     let worst = pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
     let signals = flown.signals.into_iter().zip(one_step);
-    (
-        signals.map(<[Signal; 2]>::from).collect(),
-        worst / system.scales().speed_m_s,
-    )
+    (signals.map(<[Signal; 2]>::from).collect(), worst / system.scales().speed_m_s)
 }
 
 #[test]
@@ -105,17 +100,10 @@ fn every_sensor_shows_what_the_one_step_loop_shows() {
 
 #[test]
 fn a_ring_moves_as_in_the_one_step_loop() {
-    let moving = Initial {
-        bead: 3,
-        displacement_m: 0.0,
-        velocity_m_s: 0.2,
-    };
+    let moving = Initial { bead: 3, displacement_m: 0.0, velocity_m_s: 0.2 };
     let sensors: Vec<Sensor> = (1..=10).map(Sensor::Velocity).collect();
-    let sensors = [
-        sensors,
-        vec![Sensor::Bead(1), Sensor::Contact(10), Sensor::Position(9)],
-    ]
-    .concat();
+    let sensors =
+        [sensors, vec![Sensor::Bead(1), Sensor::Contact(10), Sensor::Position(9)]].concat();
     for force_n in [0.0, 3.0] {
         let ring = Chain {
             start: Start::Free,

@@ -13,10 +13,7 @@ fn dry() -> Vec<Arc<dyn Law>> {
 }
 
 fn tsuji() -> Vec<Arc<dyn Law>> {
-    let tsuji = law(DampingTsuji {
-        damping_ratio: 0.05,
-        stiffness: None,
-    });
+    let tsuji = law(DampingTsuji { damping_ratio: 0.05, stiffness: None });
     vec![hertz(), tsuji]
 }
 
@@ -30,11 +27,7 @@ fn both(
     let baseline = InstructionSet::available().pop().unwrap();
     let system = System::new(chain).unwrap();
     [baseline, set].map(|set| {
-        let settings = Settings {
-            set,
-            openings,
-            ..settings(40)
-        };
+        let settings = Settings { set, openings, ..settings(40) };
         fire_one_in(precision, &system, (step, 1e-2), &settings)
     })
 }
@@ -45,10 +38,7 @@ fn chains() -> [Chain; 4] {
         row(40, 0.5, dry()),
         row(40, 0.5, vec![hertz()]),
         row(40, 0.5, tsuji()),
-        Chain {
-            push,
-            ..row(40, 0.5, dry())
-        },
+        Chain { push, ..row(40, 0.5, dry()) },
     ]
 }
 
@@ -66,11 +56,7 @@ fn differences([one, two]: &[LaneResult; 2]) -> [f64; 3] {
         let pairs = one.iter().zip(&two);
         pairs.fold(0.0_f64, |most, (a, b)| most.max((b / a - 1.0).abs()))
     };
-    [
-        largest(tofs(&one).to_vec(), tofs(&two).to_vec()),
-        largest(peaks(&one), peaks(&two)),
-        velocity,
-    ]
+    [largest(tofs(&one).to_vec(), tofs(&two).to_vec()), largest(peaks(&one), peaks(&two)), velocity]
 }
 
 #[test]
@@ -78,10 +64,8 @@ fn every_instruction_set_agrees_with_the_baseline() {
     // Rounding, which each opening that comes a rounding earlier or later
     // makes larger: measured 4e-14, 2e-13 and 2e-13 in
     // double precision, 1.3e-6, 7e-6 and 9e-5 in single.
-    let bounds = [
-        (Precision::Double, [1e-12, 1e-11, 1e-11]),
-        (Precision::Single, [5e-6, 5e-5, 5e-4]),
-    ];
+    let bounds =
+        [(Precision::Double, [1e-12, 1e-11, 1e-11]), (Precision::Single, [5e-6, 5e-5, 5e-4])];
     let steps = [(0.14, false), (0.03, true)].into_iter();
     for (step, chain) in steps.flat_map(|step| chains().map(|chain| (step, chain))) {
         for set in InstructionSet::available() {

@@ -1,9 +1,5 @@
 //! What shots of the ensemble loop cost, and that what rests costs nothing.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::common::ensemble::*;
 use crate::common::*;
@@ -27,11 +23,7 @@ fn the_dry_shot_costs_this_many_force_passes() {
             (0.05, false, 2417),
             (0.05, true, 2417),
         ] {
-            let settings = Settings {
-                set,
-                openings,
-                ..settings(40)
-            };
+            let settings = Settings { set, openings, ..settings(40) };
             let flown = fire_one(&system, (step, 1e-2), &settings);
             assert!(flown.finished);
             // One pass a step, and the first forces.
@@ -72,11 +64,7 @@ fn a_hundred_thousand_beads_cost_what_moves_and_keep_the_bits() {
     let system = [System::new(&row(100_000, 0.5, dry())).unwrap()];
     for precision in PRECISIONS {
         let [part, whole] = [false, true].map(|whole_chain| {
-            let settings = Settings {
-                whole_chain,
-                end: End::Duration,
-                ..settings(100_000)
-            };
+            let settings = Settings { whole_chain, end: End::Duration, ..settings(100_000) };
             let time_s = 60.0 * system[0].scales().time_s;
             let flown = fire_all_in(precision, &system, (0.1, time_s), &settings);
             flown.into_iter().next().unwrap().unwrap()
@@ -102,16 +90,10 @@ fn pair(
     openings: bool,
 ) -> [Vec<LaneResult>; 2] {
     let speed = |lane: usize| 0.3 + 0.1 * lane as f64;
-    let systems: Vec<System> = (0..lanes)
-        .map(|lane| System::new(&chain(speed(lane))).unwrap())
-        .collect();
+    let systems: Vec<System> =
+        (0..lanes).map(|lane| System::new(&chain(speed(lane))).unwrap()).collect();
     [false, true].map(|whole_chain| {
-        let settings = Settings {
-            whole_chain,
-            openings,
-            end: End::Duration,
-            ..settings(200)
-        };
+        let settings = Settings { whole_chain, openings, end: End::Duration, ..settings(200) };
         let flown = fire_all_in(precision, &systems, (0.1, 2e-3), &settings);
         flown.into_iter().map(Result::unwrap).collect()
     })
@@ -139,10 +121,7 @@ fn bodies_behind_a_returning_pulse_cost_nothing_once_only_that_pulse_is_wanted()
             .map(|lane| System::new(&row(100, 0.3 + 0.01 * lane as f64, dry())).unwrap())
             .collect();
         let [behind, all] = [false, true].map(|whole_chain| {
-            let settings = Settings {
-                whole_chain,
-                ..settings(100)
-            };
+            let settings = Settings { whole_chain, ..settings(100) };
             let flown = fire_all_in(precision, &systems, (0.1, 1e-2), &settings);
             flown.into_iter().map(Result::unwrap).collect::<Vec<_>>()
         });
@@ -181,10 +160,7 @@ fn each_contact_keeps_its_own_coefficients_when_others_sleep() {
 #[test]
 fn under_preload_the_moving_part_alone_gives_the_bits_of_the_whole_chain() {
     let push = Push::Constant { force_n: 5.0 };
-    let chain = |speed| Chain {
-        push,
-        ..row(200, speed, dry())
-    };
+    let chain = |speed| Chain { push, ..row(200, speed, dry()) };
     for (precision, lanes) in every_number_of_lanes() {
         for openings in [false, true] {
             let [part, whole] = pair(precision, lanes, chain, openings);

@@ -31,21 +31,13 @@ fn sample(row: &hertzchain_chain::laws::Row) -> Arc<dyn Law> {
 }
 
 fn columns(law: &dyn Law) -> Columns {
-    let pair = Pair {
-        left: common::STEEL,
-        right: common::STEEL,
-        radius_m: 3e-3,
-        mass_kg: 4e-3,
-    };
+    let pair = Pair { left: common::STEEL, right: common::STEEL, radius_m: 3e-3, mass_kg: 4e-3 };
     Columns::from_rows(&[law.coefficients(&pair).unwrap()])
 }
 
 #[test]
 fn elastic_force_is_the_derivative_of_the_energy() {
-    for row in LAWS
-        .iter()
-        .filter(|row| row.info.nature != Nature::Dissipative)
-    {
+    for row in LAWS.iter().filter(|row| row.info.nature != Nature::Dissipative) {
         let law = sample(row);
         let k = columns(&*law);
         for overlap in [1e-9_f64, 1e-7, 3e-6, 2e-5] {
@@ -57,10 +49,7 @@ fn elastic_force_is_the_derivative_of_the_energy() {
                 - energy(overlap + 2.0 * step)
                 + energy(overlap - 2.0 * step))
                 / (12.0 * step);
-            let closed = Closed {
-                largest,
-                ..Closed::new(overlap, 0.0)
-            };
+            let closed = Closed { largest, ..Closed::new(overlap, 0.0) };
             let force = law.force(&k, 0, closed);
             // Five-point slope at 1e-4: rounding 1e-12, and the kink where
             // an unloaded contact lets go.
@@ -75,20 +64,13 @@ fn elastic_force_is_the_derivative_of_the_energy() {
 
 #[test]
 fn dissipation_is_never_negative() {
-    for row in LAWS
-        .iter()
-        .filter(|row| row.info.nature == Nature::Dissipative)
-    {
+    for row in LAWS.iter().filter(|row| row.info.nature == Nature::Dissipative) {
         let law = sample(row);
         let k = columns(&*law);
         for overlap in [0.0, 1e-9, 1e-6, 1e-4] {
             for rate in [-2.0, -1e-3, 0.0, 1e-3, 2.0] {
                 let power = law.force(&k, 0, Closed::new(overlap, rate)) * rate;
-                assert!(
-                    power >= 0.0,
-                    "{} at {overlap} and {rate}: {power}",
-                    row.info.name
-                );
+                assert!(power >= 0.0, "{} at {overlap} and {rate}: {power}", row.info.name);
             }
         }
     }
@@ -96,23 +78,13 @@ fn dissipation_is_never_negative() {
 
 #[test]
 fn a_loading_and_unloading_cycle_loses_energy_where_a_contact_remembers() {
-    for row in LAWS
-        .iter()
-        .filter(|row| row.info.nature == Nature::ElasticPlastic)
-    {
+    for row in LAWS.iter().filter(|row| row.info.nature == Nature::ElasticPlastic) {
         let law = sample(row);
         let k = columns(&*law);
         let (deepest, steps) = (2e-5, 20_000);
         let depth = |i: i32| deepest * f64::from(i) / f64::from(steps);
         let force = |overlap, largest: f64| {
-            law.force(
-                &k,
-                0,
-                Closed {
-                    largest,
-                    ..Closed::new(overlap, 0.0)
-                },
-            )
+            law.force(&k, 0, Closed { largest, ..Closed::new(overlap, 0.0) })
         };
         let loading: f64 = (0..steps).map(|i| force(depth(i), depth(i))).sum();
         let unloading: f64 = (0..steps).map(|i| force(depth(i), deepest)).sum();
@@ -126,17 +98,9 @@ fn a_loading_and_unloading_cycle_loses_energy_where_a_contact_remembers() {
 
 #[test]
 fn elastic_laws_give_no_force_at_zero_overlap() {
-    for row in LAWS
-        .iter()
-        .filter(|row| row.info.nature != Nature::Dissipative)
-    {
+    for row in LAWS.iter().filter(|row| row.info.nature != Nature::Dissipative) {
         let law = sample(row);
-        assert_eq!(
-            law.force(&columns(&*law), 0, Closed::new(0.0, 1.0)),
-            0.0,
-            "{}",
-            row.info.name
-        );
+        assert_eq!(law.force(&columns(&*law), 0, Closed::new(0.0, 1.0)), 0.0, "{}", row.info.name);
     }
 }
 
@@ -145,24 +109,13 @@ fn elastic_laws_give_no_force_at_zero_overlap() {
 fn no_gated_law_acts_across_a_gap() {
     use hertzchain_chain::{Chain, FarEnd, Gap, Initial, Section, Start};
     for row in LAWS.iter().filter(|row| row.info.gated) {
-        let section = Section {
-            contacts: 0..=2,
-            laws: vec![sample(row)],
-            material: None,
-        };
+        let section = Section { contacts: 0..=2, laws: vec![sample(row)], material: None };
         let chain = Chain {
             start: Start::Free,
             far: FarEnd::Free,
             sections: vec![section],
-            gaps: vec![Gap {
-                contact: 1,
-                gap_m: 1e-3,
-            }],
-            initial: vec![Initial {
-                bead: 1,
-                displacement_m: 0.0,
-                velocity_m_s: 0.5,
-            }],
+            gaps: vec![Gap { contact: 1, gap_m: 1e-3 }],
+            initial: vec![Initial { bead: 1, displacement_m: 0.0, velocity_m_s: 0.5 }],
             ..common::row(2, 1.0, vec![])
         };
         let outcome = common::run_for(&chain, 1e-8, 1e-3);
@@ -174,15 +127,10 @@ fn no_gated_law_acts_across_a_gap() {
 fn columns_give_the_same_bits_as_single_contacts() {
     for row in LAWS {
         let law = sample(row);
-        let pair = |radius_m| Pair {
-            left: common::STEEL,
-            right: common::STEEL,
-            radius_m,
-            mass_kg: 4e-3,
-        };
-        let rows: Vec<_> = (1..=9)
-            .map(|i| law.coefficients(&pair(1e-3 * f64::from(i))).unwrap())
-            .collect();
+        let pair =
+            |radius_m| Pair { left: common::STEEL, right: common::STEEL, radius_m, mass_kg: 4e-3 };
+        let rows: Vec<_> =
+            (1..=9).map(|i| law.coefficients(&pair(1e-3 * f64::from(i))).unwrap()).collect();
         let k = Columns::from_rows(&rows);
         let overlap: Vec<f64> = (0..9).map(|i| 1e-6 * f64::from(i)).collect();
         let root: Vec<f64> = overlap.iter().map(|d| d.sqrt()).collect();
@@ -210,12 +158,7 @@ fn every_law_cites_an_entry_of_the_bibliography() {
     let bibliography = include_str!("../../../references.bib");
     for row in LAWS {
         let key = format!("{{{},", row.info.reference);
-        assert!(
-            bibliography.contains(&key),
-            "{} cites {}",
-            row.info.name,
-            row.info.reference
-        );
+        assert!(bibliography.contains(&key), "{} cites {}", row.info.name, row.info.reference);
     }
 }
 
@@ -253,17 +196,9 @@ fn restitution_of_every_damping_law_matches_an_independent_integration() {
     let text = include_str!("../../../bench/reference/numbers.json");
     let cases: serde_json::Value = serde_json::from_str(text).unwrap();
     let mut seen = 0;
-    for row in LAWS
-        .iter()
-        .filter(|row| row.info.nature == Nature::Dissipative)
-    {
+    for row in LAWS.iter().filter(|row| row.info.nature == Nature::Dissipative) {
         let name = format!("restitution/{}", row.info.name);
-        let Some(case) = cases
-            .as_array()
-            .unwrap()
-            .iter()
-            .find(|case| case["case"] == *name)
-        else {
+        let Some(case) = cases.as_array().unwrap().iter().find(|case| case["case"] == *name) else {
             continue;
         };
         let given = parameters(row, &case["parameters"]);
@@ -293,16 +228,8 @@ fn parameters<'a>(
         "rate_exponent" => vec!["rate_exponent"],
         _ => vec![],
     };
-    let value = |name| {
-        symbols(name)
-            .into_iter()
-            .find_map(|symbol| from[symbol].as_f64())
-    };
-    row.info
-        .parameters
-        .iter()
-        .filter_map(|p| Some((p.name, value(p.name)?)))
-        .collect()
+    let value = |name| symbols(name).into_iter().find_map(|symbol| from[symbol].as_f64());
+    row.info.parameters.iter().filter_map(|p| Some((p.name, value(p.name)?))).collect()
 }
 
 /// [Thornton1997]'s closed form, held against the work of the law by the
@@ -369,10 +296,7 @@ impl Arithmetic for One {
 
 /// What a law adds to a sum that has something in it, and what it says alone.
 fn both<T: Wide<1>>(k: f64, contact: Closed) -> [f64; 2] {
-    let before = Split {
-        rooted: One(1.5),
-        plain: One(-0.5),
-    };
+    let before = Split { rooted: One(1.5), plain: One(-0.5) };
     let registers = Closed {
         overlap: One(contact.overlap),
         root: One(contact.root),
@@ -395,10 +319,7 @@ fn a_law_says_the_same_for_registers_as_for_numbers() {
         ];
         for [added, alone] in pairs {
             // Some roundings of sums of the size of what was there before.
-            assert!(
-                (added - alone).abs() < 1e-15 * (2.0 + 8.0 * alone.abs()),
-                "{added} {alone}"
-            );
+            assert!((added - alone).abs() < 1e-15 * (2.0 + 8.0 * alone.abs()), "{added} {alone}");
         }
     }
 }

@@ -11,31 +11,17 @@ fn dry() -> Vec<std::sync::Arc<dyn laws::Law>> {
 
 #[test]
 fn stiffness_and_relaxation_time_of_the_paper_follow_from_its_materials() {
-    let pair = Pair {
-        left: STEEL,
-        right: STEEL,
-        radius_m: 0.5 * 6.35e-3,
-        mass_kg: 4.27e-3,
-    };
+    let pair = Pair { left: STEEL, right: STEEL, radius_m: 0.5 * 6.35e-3, mass_kg: 4.27e-3 };
     // Printed to eleven digits.
     close(pair.hertz_stiffness(), 8.792_630_379_6e9, 1e-11);
-    close(
-        pair.mean_relaxation_time_s(Material::relaxation_time_s),
-        3.385_289_514_9e-7,
-        1e-10,
-    );
+    close(pair.mean_relaxation_time_s(Material::relaxation_time_s), 3.385_289_514_9e-7, 1e-10);
 }
 
 #[test]
 fn times_of_flight_match_two_independent_integrations() {
     let cases = [
         (1.0, vec![hertz()], 630.841591e-6, 632.265715e-6),
-        (
-            0.5,
-            vec![hertz(), viscoelastic()],
-            751.270959e-6,
-            783.036376e-6,
-        ),
+        (0.5, vec![hertz(), viscoelastic()], 751.270959e-6, 783.036376e-6),
         (0.075, dry(), 1_086.942_704e-6, 1_120.470_790e-6),
         (1.23, dry(), 660.261248e-6, 699.493431e-6),
     ];
@@ -55,55 +41,21 @@ fn peaks_and_rebound_match_an_independent_integration() {
     let mut separation = Separation::default();
     let limits = Limits::until(reference("rig/hertz_1", "run_ends_s"));
     let method = DormandPrince { tolerance: 1e-10 };
-    let outcome = run(
-        &system,
-        &method,
-        limits,
-        &mut [&mut passages, &mut separation],
-    )
-    .unwrap();
+    let outcome = run(&system, &method, limits, &mut [&mut passages, &mut separation]).unwrap();
     let passage = passages.passage().unwrap();
     // The reference's own error is 1e-8 at worst.
-    close(
-        passage.incident.value,
-        reference("rig/hertz_1", "sensor_peak_n"),
-        1e-8,
-    );
-    close(
-        passage.wall.value,
-        reference("rig/hertz_1", "wall_peak_n"),
-        1e-8,
-    );
-    close(
-        passage.reflected.unwrap().value,
-        reference("rig/hertz_1", "returning_peak_n"),
-        3e-8,
-    );
+    close(passage.incident.value, reference("rig/hertz_1", "sensor_peak_n"), 1e-8);
+    close(passage.wall.value, reference("rig/hertz_1", "wall_peak_n"), 1e-8);
+    close(passage.reflected.unwrap().value, reference("rig/hertz_1", "returning_peak_n"), 3e-8);
     let (time, velocity) = separation.first().unwrap();
-    close(
-        time,
-        reference("rig/hertz_1", "striker_first_separation_s"),
-        1e-8,
-    );
-    close(
-        velocity,
-        reference("rig/hertz_1", "striker_at_first_separation_m_s"),
-        1e-7,
-    );
-    close(
-        outcome.velocity_m_s[0],
-        reference("rig/hertz_1", "striker_at_end_of_run_m_s"),
-        1e-8,
-    );
+    close(time, reference("rig/hertz_1", "striker_first_separation_s"), 1e-8);
+    close(velocity, reference("rig/hertz_1", "striker_at_first_separation_m_s"), 1e-7);
+    close(outcome.velocity_m_s[0], reference("rig/hertz_1", "striker_at_end_of_run_m_s"), 1e-8);
 }
 
 #[test]
 fn hertz_tof_scales_as_speed_to_minus_one_fifth() {
-    let tof = |speed| {
-        shoot(&row(40, speed, vec![hertz()]), 1e-11)
-            .0
-            .tof_incident_s()
-    };
+    let tof = |speed| shoot(&row(40, speed, vec![hertz()]), 1e-11).0.tof_incident_s();
     let exponent = (tof(1.2) / tof(0.1)).ln() / 12.0_f64.ln();
     // Errors of both shots are about 1e-10.
     assert!((exponent + 0.2).abs() < 1e-9, "{exponent}");
@@ -117,13 +69,8 @@ fn equal_striker_sends_the_known_pulse() {
     let mut later = observe::Signal::new(Sensor::Velocity(100));
     let mut force = observe::Signal::new(Sensor::Contact(80));
     let method = DormandPrince { tolerance: 1e-11 };
-    run(
-        &system,
-        &method,
-        Limits::until(125.0),
-        &mut [&mut velocity, &mut later, &mut force],
-    )
-    .unwrap();
+    run(&system, &method, Limits::until(125.0), &mut [&mut velocity, &mut later, &mut force])
+        .unwrap();
     let first = |signal: &observe::Signal| signal.maxima()[0];
     let speed = 20.0 / (first(&later).time_s - first(&velocity).time_s);
     // Eight digits are given.
@@ -144,43 +91,20 @@ fn energy_residual_is_below_what_was_asked() {
 #[test]
 fn a_reading_changes_times_of_flight_as_the_independent_integration_says() {
     let push = Push::Constant { force_n: 0.24 };
-    let stop = FarEnd::Stop {
-        radius_m: BALL.radius_m,
-        material: STEEL,
-        mass_kg: 4.5,
-    };
+    let stop = FarEnd::Stop { radius_m: BALL.radius_m, material: STEEL, mass_kg: 4.5 };
     let incline = 0.5_f64.to_radians();
     let base = row(40, 0.5, dry());
     let cases = [
         (
             "rig/dry_push_incline_stop_0.5",
-            Chain {
-                push,
-                far: stop,
-                incline_rad: incline,
-                ..base.clone()
-            },
+            Chain { push, far: stop, incline_rad: incline, ..base.clone() },
         ),
-        (
-            "rig/dry_clipped_0.5",
-            Chain {
-                tension: Tension::Clipped,
-                ..base
-            },
-        ),
+        ("rig/dry_clipped_0.5", Chain { tension: Tension::Clipped, ..base }),
     ];
     for (case, chain) in cases {
         let (passage, outcome) = shoot(&chain, 1e-10);
-        close(
-            passage.tof_incident_s(),
-            reference(case, "tof_incident_s"),
-            3e-9,
-        );
-        close(
-            passage.tof_reflected_s().unwrap(),
-            reference(case, "tof_reflected_s"),
-            1e-8,
-        );
+        close(passage.tof_incident_s(), reference(case, "tof_incident_s"), 3e-9);
+        close(passage.tof_reflected_s().unwrap(), reference(case, "tof_reflected_s"), 1e-8);
         // 200 times the tolerance, as for any shot.
         assert!(outcome.budget.unwrap().relative_residual().abs() < 2e-8);
     }
@@ -190,10 +114,7 @@ fn a_reading_changes_times_of_flight_as_the_independent_integration_says() {
 /// before the wave; that is no wall pulse.
 #[test]
 fn rounding_of_static_forces_is_not_taken_for_a_pulse() {
-    let chain = Chain {
-        incline_rad: 1.57,
-        ..row(60, 0.3, vec![hertz()])
-    };
+    let chain = Chain { incline_rad: 1.57, ..row(60, 0.3, vec![hertz()]) };
     for tolerance in [1e-7, 1e-9, 1e-11] {
         let (passage, _) = shoot(&chain, tolerance);
         assert_eq!(passage.wall_maxima.len(), 1, "{tolerance:e}");

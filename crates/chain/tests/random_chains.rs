@@ -39,11 +39,7 @@ fn damping() -> impl Strategy<Value = Arc<dyn Law>> {
             ("damping_linear", _) => 4.0 * size,
             _ => 50.0 * size,
         };
-        let required = row
-            .info
-            .parameters
-            .iter()
-            .filter(|p| p.source == Source::Required);
+        let required = row.info.parameters.iter().filter(|p| p.source == Source::Required);
         let given: Vec<_> = required.map(|p| (p.name, value(p.name))).collect();
         row.build(&given).unwrap()
     })
@@ -51,10 +47,7 @@ fn damping() -> impl Strategy<Value = Arc<dyn Law>> {
 
 fn far() -> impl Strategy<Value = FarEnd> {
     prop_oneof![
-        material().prop_map(|material| FarEnd::HalfBead {
-            radius_m: 5e-3,
-            material
-        }),
+        material().prop_map(|material| FarEnd::HalfBead { radius_m: 5e-3, material }),
         material().prop_map(|material| FarEnd::Plane { material }),
         (material(), 1e-3..10.0).prop_map(|(material, mass_kg)| FarEnd::Stop {
             radius_m: 5e-3,
@@ -69,20 +62,14 @@ fn push() -> impl Strategy<Value = Push> {
     prop_oneof![
         Just(Push::None),
         (1e-3..10.0).prop_map(|force_n| Push::Constant { force_n }),
-        (1e-3..10.0, 1.0..1e6).prop_map(|(force_n, stiffness_n_m)| Push::Spring {
-            force_n,
-            stiffness_n_m
-        }),
+        (1e-3..10.0, 1.0..1e6)
+            .prop_map(|(force_n, stiffness_n_m)| Push::Spring { force_n, stiffness_n_m }),
     ]
 }
 
 fn chain() -> impl Strategy<Value = Chain> {
     let ends = (bead(), 1e-3..5.0, far(), push(), 0.0..1.57);
-    let contacts = (
-        proptest::collection::vec(damping(), 0..3),
-        any::<bool>(),
-        0.0..1e-4,
-    );
+    let contacts = (proptest::collection::vec(damping(), 0..3), any::<bool>(), 0.0..1e-4);
     (proptest::collection::vec(bead(), 1..10), ends, contacts).prop_map(
         |(beads, ends, contacts)| {
             let (striker, speed_m_s, far, push, incline_rad) = ends;
@@ -92,26 +79,12 @@ fn chain() -> impl Strategy<Value = Chain> {
             // A chain that nothing holds can be neither pushed nor inclined.
             let held = far != FarEnd::Free;
             Chain {
-                gaps: vec![Gap {
-                    contact: last / 2,
-                    gap_m,
-                }],
-                start: Start::Striker {
-                    bead: striker,
-                    speed_m_s,
-                },
-                sections: vec![Section {
-                    contacts: 0..=last,
-                    laws,
-                    material: None,
-                }],
+                gaps: vec![Gap { contact: last / 2, gap_m }],
+                start: Start::Striker { bead: striker, speed_m_s },
+                sections: vec![Section { contacts: 0..=last, laws, material: None }],
                 push: if held { push } else { Push::None },
                 incline_rad: if held { incline_rad } else { 0.0 },
-                tension: if clipped {
-                    Tension::Clipped
-                } else {
-                    Tension::Allowed
-                },
+                tension: if clipped { Tension::Clipped } else { Tension::Allowed },
                 far,
                 beads,
                 ..common::row(1, 1.0, vec![])
@@ -122,59 +95,22 @@ fn chain() -> impl Strategy<Value = Chain> {
 
 /// The same beads and laws, set in motion another way.
 fn started(chain: Chain, kind: u8, size: f64) -> Chain {
-    let moving = |bead| Initial {
-        bead,
-        displacement_m: 0.0,
-        velocity_m_s: size,
-    };
-    let flat = Chain {
-        push: Push::None,
-        incline_rad: 0.0,
-        gaps: vec![],
-        ..chain
-    };
-    let free = Chain {
-        start: Start::Free,
-        initial: vec![moving(1)],
-        ..flat.clone()
-    };
+    let moving = |bead| Initial { bead, displacement_m: 0.0, velocity_m_s: size };
+    let flat = Chain { push: Push::None, incline_rad: 0.0, gaps: vec![], ..chain };
+    let free = Chain { start: Start::Free, initial: vec![moving(1)], ..flat.clone() };
     let bead = flat.beads[0];
     match kind {
-        0 => Chain {
-            far: FarEnd::Periodic {
-                force_n: 5.0 * size,
-            },
-            ..free
-        },
-        1 => Chain {
-            far: FarEnd::Free,
-            suspension_m: Some(size),
-            ..free
-        },
+        0 => Chain { far: FarEnd::Periodic { force_n: 5.0 * size }, ..free },
+        1 => Chain { far: FarEnd::Free, suspension_m: Some(size), ..free },
         2 => {
-            let motion = Motion::Pulse {
-                amplitude_m: 1e-5 * size,
-                duration_s: 2e-4,
-            };
+            let motion = Motion::Pulse { amplitude_m: 1e-5 * size, duration_s: 2e-4 };
             let push = Push::Constant { force_n: size };
             let far = FarEnd::Plane { material: STEEL };
-            Chain {
-                start: Start::Driven { bead, motion },
-                push,
-                far,
-                ..flat
-            }
+            Chain { start: Start::Driven { bead, motion }, push, far, ..flat }
         }
         _ => {
-            let motion = Motion::Sine {
-                amplitude_m: 1e-6 * size,
-                frequency_hz: 5e3,
-            };
-            Chain {
-                start: Start::Driven { bead, motion },
-                far: FarEnd::Free,
-                ..flat
-            }
+            let motion = Motion::Sine { amplitude_m: 1e-6 * size, frequency_hz: 5e3 };
+            Chain { start: Start::Driven { bead, motion }, far: FarEnd::Free, ..flat }
         }
     }
 }

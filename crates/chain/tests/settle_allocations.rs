@@ -7,10 +7,7 @@ use hertzchain_chain::*;
 
 /// What a tap allocates, and how many steps it takes.
 fn allocated(system: &System, start: &State, step: f64) -> (AllocationInfo, u64) {
-    let slow = SlowPhase {
-        step,
-        ..SlowPhase::default()
-    };
+    let slow = SlowPhase { step, ..SlowPhase::default() };
     let (mut state, mut steps) = (start.clone(), 0);
     let info = measure(|| {
         let rest = settle(system, &mut state, &slow, &mut |_, _, _| {});

@@ -12,10 +12,7 @@ const TAP_M_S: f64 = 0.18;
 /// The dry row, pushed by a spring.
 fn dry(push_n: f64) -> Chain {
     Chain {
-        push: Push::Spring {
-            force_n: push_n,
-            stiffness_n_m: 100.0,
-        },
+        push: Push::Spring { force_n: push_n, stiffness_n_m: 100.0 },
         ..row(40, TAP_M_S, vec![hertz(), viscoelastic(), cubic()])
     }
 }
@@ -26,20 +23,14 @@ fn tapped(system: &System, state: &mut State, speed_m_s: f64, slow: &SlowPhase) 
 }
 
 fn with_step(step: f64) -> SlowPhase {
-    SlowPhase {
-        step,
-        ..SlowPhase::default()
-    }
+    SlowPhase { step, ..SlowPhase::default() }
 }
 
 #[test]
 fn under_a_push_a_tap_leaves_contacts_closed_and_the_row_at_rest() {
     let system = System::new(&dry(PUSH_N)).unwrap();
     for friction_coefficient in [0.005, 0.02, 0.05, 0.2] {
-        let slow = SlowPhase {
-            friction_coefficient,
-            ..SlowPhase::default()
-        };
+        let slow = SlowPhase { friction_coefficient, ..SlowPhase::default() };
         let mut state = State::start(&system);
         let rest = tapped(&system, &mut state, TAP_M_S, &slow);
         assert!((35..=40).contains(&rest.closed_contacts));
@@ -53,10 +44,7 @@ fn under_a_push_a_tap_leaves_contacts_closed_and_the_row_at_rest() {
 
 #[test]
 fn without_a_push_a_shot_leaves_gaps_of_a_millimetre_or_so_in_all() {
-    let chain = Chain {
-        push: Push::None,
-        ..dry(PUSH_N)
-    };
+    let chain = Chain { push: Push::None, ..dry(PUSH_N) };
     let system = System::new(&chain).unwrap();
     let mut state = State::start(&system);
     let rest = tapped(&system, &mut state, 1.0, &SlowPhase::default());
@@ -90,11 +78,7 @@ fn a_tap_ends_where_steps_a_hundred_times_shorter_end() {
 
 /// Largest signals of bead 7 and of the wall within 3 ms, with this step.
 fn peaks(system: &System, step: f64) -> [f64; 2] {
-    let slow = SlowPhase {
-        friction_coefficient: 0.0,
-        longest_s: 3e-3,
-        ..with_step(step)
-    };
+    let slow = SlowPhase { friction_coefficient: 0.0, longest_s: 3e-3, ..with_step(step) };
     let rest = |contact: usize| system.static_contact(contact).force_n;
     let mut peaks = [0.0_f64; 2];
     let mut state = State::start(system);
@@ -109,16 +93,8 @@ fn peaks(system: &System, step: f64) -> [f64; 2] {
 
 /// The dry row with a softer, more viscous stretch from bead 7 to the wall.
 fn wet() -> Chain {
-    let section = |contacts, laws, material| Section {
-        contacts,
-        laws,
-        material,
-    };
-    let soft = Material {
-        young_modulus_pa: 193e9,
-        shear_viscosity_pa_s: 6.6e4,
-        ..STEEL
-    };
+    let section = |contacts, laws, material| Section { contacts, laws, material };
+    let soft = Material { young_modulus_pa: 193e9, shear_viscosity_pa_s: 6.6e4, ..STEEL };
     let dry_laws = vec![hertz(), viscoelastic(), cubic()];
     Chain {
         sections: vec![
@@ -131,10 +107,7 @@ fn wet() -> Chain {
 
 #[test]
 fn peaks_of_a_tap_are_those_of_the_wave_loop() {
-    let clipped = Chain {
-        tension: Tension::Clipped,
-        ..dry(PUSH_N)
-    };
+    let clipped = Chain { tension: Tension::Clipped, ..dry(PUSH_N) };
     for chain in [dry(PUSH_N), wet(), clipped] {
         let system = System::new(&chain).unwrap();
         let (passage, _) = shoot(&chain, 1e-9);
@@ -154,10 +127,7 @@ fn peaks_of_a_tap_are_those_of_the_wave_loop() {
 /// Energy in J of the dry row pushed by a spring of 100 N/m, up to a constant.
 fn energy(system: &System, state: &State) -> f64 {
     let stiffness = 8.792_630_379_6e9;
-    let kinetic: f64 = state.velocity_m_s[..=40]
-        .iter()
-        .map(|v| 0.5 * BALL.mass_kg * v * v)
-        .sum();
+    let kinetic: f64 = state.velocity_m_s[..=40].iter().map(|v| 0.5 * BALL.mass_kg * v * v).sum();
     let overlaps = (0..=40).map(|c| state.overlap_m(system, c).max(0.0));
     let elastic: f64 = overlaps.map(|d| 0.4 * stiffness * d * d * d.sqrt()).sum();
     let left = (PUSH_N / 100.0 - state.displacement_m[1]).max(0.0);
@@ -235,13 +205,7 @@ fn a_row_at_rest_stays_at_rest_until_the_wave_comes() {
     close(after.displacement_m[40], state.displacement_m[40], 1e-6);
     // And back into the slow phase, which takes the chain itself, not the copy.
     let mut rested = after.clone();
-    settle(
-        &system,
-        &mut rested,
-        &SlowPhase::default(),
-        &mut |_, _, _| {},
-    )
-    .unwrap();
+    settle(&system, &mut rested, &SlowPhase::default(), &mut |_, _, _| {}).unwrap();
     let refused = settle(&shot, &mut rested, &SlowPhase::default(), &mut |_, _, _| {});
     let text = refused.unwrap_err().to_string();
     assert!(text.starts_with("a chain made from a state"), "{text}");
@@ -280,10 +244,7 @@ fn what_friction_locks_moves_a_time_of_flight_by_less_than_a_thousandth() {
     let (incident, reflected) = (locked.0 / free.0 - 1.0, locked.1 / free.1 - 1.0);
     // Locked-in forces are up to 4 mN a bead beside 0.24 N of the push, in
     // overlaps of 90 nm beside 3 µm of the wave.
-    assert!(
-        incident.abs() < 1e-3 && reflected.abs() < 3e-3,
-        "{incident} {reflected}"
-    );
+    assert!(incident.abs() < 1e-3 && reflected.abs() < 3e-3, "{incident} {reflected}");
     assert!(incident != 0.0);
 }
 
@@ -295,13 +256,7 @@ fn gaps_that_are_laid_are_closed_by_the_push() {
     for (contact, gap) in gaps.iter().enumerate() {
         assert!((state.overlap_m(&system, contact) + gap).abs() < 1e-15);
     }
-    let rest = settle(
-        &system,
-        &mut state,
-        &SlowPhase::default(),
-        &mut |_, _, _| {},
-    )
-    .unwrap();
+    let rest = settle(&system, &mut state, &SlowPhase::default(), &mut |_, _, _| {}).unwrap();
     let total: f64 = rest.gaps_m[1..].iter().sum();
     let laid: f64 = gaps[1..].iter().sum();
     assert!(total < 0.1 * laid, "{total} of {laid}");

@@ -5,13 +5,8 @@ use hertzchain_chain::theory::linear::{
 };
 use std::f64::consts::PI;
 
-const ALL_ENDS: [Ends; 5] = [
-    Ends::FreeFree,
-    Ends::FreeFixed,
-    Ends::FixedFree,
-    Ends::FixedFixed,
-    Ends::Periodic,
-];
+const ALL_ENDS: [Ends; 5] =
+    [Ends::FreeFree, Ends::FreeFixed, Ends::FixedFree, Ends::FixedFixed, Ends::Periodic];
 
 fn contacts(beads: usize, ends: Ends) -> usize {
     match ends {
@@ -24,10 +19,7 @@ fn contacts(beads: usize, ends: Ends) -> usize {
 #[test]
 fn uniform_chain_has_the_closed_form_frequencies_with_every_kind_of_ends() {
     let (mass_kg, contact_stiffness_n_m) = (8.54e-3, 4.1e6);
-    let chain = UniformChain {
-        mass_kg,
-        contact_stiffness_n_m,
-    };
+    let chain = UniformChain { mass_kg, contact_stiffness_n_m };
     let cutoff = 2.0 * chain.sound_speed_beads_s();
     for ends in ALL_ENDS {
         for beads in [2, 3, 40, 41] {
@@ -100,10 +92,7 @@ fn free_chain_can_shift_at_no_frequency() {
 
 #[test]
 fn ring_of_dimers_has_its_modes_on_the_two_branches() {
-    let dimer = Dimer {
-        masses_kg: [1.0, 0.3],
-        contact_stiffnesses_n_m: [2.0, 1.2],
-    };
+    let dimer = Dimer { masses_kg: [1.0, 0.3], contact_stiffnesses_n_m: [2.0, 1.2] };
     let cells = 12;
     let mut expected: Vec<f64> = (0..cells)
         .flat_map(|j| {
@@ -124,10 +113,7 @@ fn ring_of_dimers_has_its_modes_on_the_two_branches() {
 
 #[test]
 fn band_gap_of_a_mass_dimer_lies_between_the_two_single_bead_frequencies() {
-    let dimer = Dimer {
-        masses_kg: [4.0, 1.0],
-        contact_stiffnesses_n_m: [3.0, 3.0],
-    };
+    let dimer = Dimer { masses_kg: [4.0, 1.0], contact_stiffnesses_n_m: [3.0, 3.0] };
     let edges = dimer.band_edges();
     let single = |mass: f64| (2.0 * 3.0 / mass).sqrt() / (2.0 * PI);
     // Closed forms on both sides: rounding.
@@ -139,14 +125,8 @@ fn band_gap_of_a_mass_dimer_lies_between_the_two_single_bead_frequencies() {
 
 #[test]
 fn gap_closes_for_equal_beads_and_the_branches_are_the_folded_uniform_chain() {
-    let dimer = Dimer {
-        masses_kg: [2.0, 2.0],
-        contact_stiffnesses_n_m: [5.0, 5.0],
-    };
-    let chain = UniformChain {
-        mass_kg: 2.0,
-        contact_stiffness_n_m: 5.0,
-    };
+    let dimer = Dimer { masses_kg: [2.0, 2.0], contact_stiffnesses_n_m: [5.0, 5.0] };
+    let chain = UniformChain { mass_kg: 2.0, contact_stiffness_n_m: 5.0 };
     let edges = dimer.band_edges();
     // The two roots meet: rounding enters through a square root, 1e-8.
     assert!((edges.optical_bottom_hz - edges.acoustic_top_hz).abs() < 1e-8);
@@ -158,14 +138,8 @@ fn gap_closes_for_equal_beads_and_the_branches_are_the_folded_uniform_chain() {
 
 #[test]
 fn sound_speeds_are_the_slopes_of_the_dispersion_at_long_waves() {
-    let chain = UniformChain {
-        mass_kg: 2.0,
-        contact_stiffness_n_m: 7.0,
-    };
-    let dimer = Dimer {
-        masses_kg: [2.0, 1.0],
-        contact_stiffnesses_n_m: [7.0, 3.0],
-    };
+    let chain = UniformChain { mass_kg: 2.0, contact_stiffness_n_m: 7.0 };
+    let dimer = Dimer { masses_kg: [2.0, 1.0], contact_stiffnesses_n_m: [7.0, 3.0] };
     let q = 1e-4;
     // Dispersion bends by q²/24 of the speed.
     let slope = chain.angular_frequency_rad_s(q) / q;
@@ -187,10 +161,7 @@ fn contact_stiffness_is_the_slope_of_the_force() {
 
 #[test]
 fn waves_above_the_cutoff_decay_by_the_recurrence_of_the_lattice() {
-    let chain = UniformChain {
-        mass_kg: 1.0,
-        contact_stiffness_n_m: 1.0,
-    };
+    let chain = UniformChain { mass_kg: 1.0, contact_stiffness_n_m: 1.0 };
     let frequency = 1.3 * chain.cutoff_frequency_hz();
     let factor = -(-chain.decay_per_bead(frequency)).exp();
     let squared = (2.0 * PI * frequency).powi(2);

@@ -74,10 +74,7 @@ fn displacement_form_solves_its_first_integral() {
 #[test]
 fn exact_hertz_speed_lies_between_the_two_forms() {
     let exact = SolitaryShape::hertz().unwrap().speed_squared();
-    let strain = LongWave {
-        form: LongWaveForm::Strain,
-        ..LongWave::HERTZ
-    };
+    let strain = LongWave { form: LongWaveForm::Strain, ..LongWave::HERTZ };
     assert!(LongWave::HERTZ.speed_squared() < exact && exact < strain.speed_squared());
 }
 
@@ -105,9 +102,6 @@ fn preloaded_speed_joins_sound_and_the_touching_chain() {
     assert!((speed(0.4, 0.4 * (1.0 + 1e-9)) / sound(0.4) - 1.0).abs() < 1e-9);
     assert!((speed(1e-14, 0.4) / touching - 1.0).abs() < 1e-12);
     // Both branches meet at the switch: the quotient's rounding, 1e-16/1e-8, and excess².
-    let (below, above) = (
-        speed(0.4, 0.4 * 1.000_099_99),
-        speed(0.4, 0.4 * 1.000_100_01),
-    );
+    let (below, above) = (speed(0.4, 0.4 * 1.000_099_99), speed(0.4, 0.4 * 1.000_100_01));
     assert!((above / below - 1.0).abs() < 5e-8);
 }

@@ -49,10 +49,7 @@ fn profile_solves_the_advance_delay_equation_between_the_grid_points() {
             // Both series carry rounding of a few hundred terms; the power
             // amplifies it n-fold.
             let gap = shape.overlap(x).powf(exponent) - shape.force(x);
-            assert!(
-                gap.abs() < 2e-14 * exponent,
-                "n = {exponent}, x = {x}: {gap:e}"
-            );
+            assert!(gap.abs() < 2e-14 * exponent, "n = {exponent}, x = {x}: {gap:e}");
         }
     }
 }
@@ -60,10 +57,7 @@ fn profile_solves_the_advance_delay_equation_between_the_grid_points() {
 #[test]
 fn tail_falls_double_exponentially() {
     let shape = SolitaryShape::hertz().unwrap();
-    let logs: Vec<f64> = [2.0, 3.0, 4.0]
-        .iter()
-        .map(|&x| shape.overlap(x).ln())
-        .collect();
+    let logs: Vec<f64> = [2.0, 3.0, 4.0].iter().map(|&x| shape.overlap(x).ln()).collect();
     // ln p(x+1) ~ n ln p(x) + slowly varying terms: the ratio of logarithms tends
     // to 3/2 from above, the tail's next bead is far smaller than a geometric one.
     let ratios = (logs[1] / logs[0], logs[2] / logs[1]);
@@ -107,13 +101,11 @@ fn lattice_carries_the_wave_unchanged() {
     let wave = SolitaryWave::from_peak_force(&shape, 1.0, 1.0, 1.0).unwrap();
     let (beads, start, travelled) = (40, 10.0, 20.0);
     let at = |bead: usize, centre: f64| bead as f64 - centre;
-    let mut velocity: Vec<f64> = (0..beads)
-        .map(|bead| wave.bead_speed_m_s(at(bead, start)))
-        .collect();
+    let mut velocity: Vec<f64> =
+        (0..beads).map(|bead| wave.bead_speed_m_s(at(bead, start))).collect();
     // overlap[i] sits between beads i and i + 1.
-    let mut overlap: Vec<f64> = (0..beads - 1)
-        .map(|bead| wave.overlap_m(at(bead, start) + 0.5))
-        .collect();
+    let mut overlap: Vec<f64> =
+        (0..beads - 1).map(|bead| wave.overlap_m(at(bead, start) + 0.5)).collect();
     let steps = 20_000;
     let h = wave.time_of_flight_s(travelled) / f64::from(steps);
     for _ in 0..steps {
@@ -133,9 +125,7 @@ fn energy_and_momentum_are_those_of_the_sampled_lattice_at_any_instant() {
     for centre in [0.0, 0.13, 0.5, 0.77] {
         let beads = || (-9..=9).map(|bead| f64::from(bead) - centre);
         let kinetic: f64 = beads().map(|x| wave.bead_speed_m_s(x).powi(2)).sum();
-        let elastic: f64 = beads()
-            .map(|x| 3.0 / 2.5 * wave.overlap_m(x + 0.5).powf(2.5))
-            .sum();
+        let elastic: f64 = beads().map(|x| 3.0 / 2.5 * wave.overlap_m(x + 0.5).powf(2.5)).sum();
         let momentum: f64 = beads().map(|x| 2.0 * wave.bead_speed_m_s(x)).sum();
         // Quadrature and profile to 1e-14; nineteen terms.
         assert!(relative(kinetic + elastic, wave.energy_j()) < 1e-13);

@@ -10,15 +10,9 @@ fn energy_share_of_an_equal_striker_fixes_the_known_speed_force_and_bead_speed()
     let pulse = LeadingPulse::from_energy_share(&shape, 1.0, 0.99366101).unwrap();
     // One unit of the last printed digit, which the energy share's own rounding can cause.
     let tolerance = 1e-8;
-    assert!(
-        (pulse.bead_speed - 0.68163155).abs() < tolerance,
-        "{pulse:?}"
-    );
+    assert!((pulse.bead_speed - 0.68163155).abs() < tolerance, "{pulse:?}");
     assert!((pulse.speed - 0.84050877).abs() < tolerance, "{pulse:?}");
-    assert!(
-        (pulse.peak_force - 0.63955423).abs() < tolerance,
-        "{pulse:?}"
-    );
+    assert!((pulse.peak_force - 0.63955423).abs() < tolerance, "{pulse:?}");
 }
 
 #[test]
@@ -36,10 +30,7 @@ fn lattice_puts_the_known_energy_share_into_the_leading_pulse() {
     let extrapolated = fine + (fine - coarse) / 3.0;
     // The scheme is of second order (the finer share is 4e-8 off); what the
     // extrapolation leaves is below the last digit known.
-    assert!(
-        (extrapolated - 0.99366101).abs() < 1e-8,
-        "{extrapolated:.10}"
-    );
+    assert!((extrapolated - 0.99366101).abs() < 1e-8, "{extrapolated:.10}");
 }
 
 /// Energy of the beads ahead of bead 40 when the pulse is near bead 48: what
@@ -53,7 +44,5 @@ fn leading_energy_share(h: f64) -> f64 {
     for _ in 0..steps {
         verlet_step(&mut overlap, &mut velocity, h);
     }
-    (40..beads - 1)
-        .map(|i| velocity[i] * velocity[i] + 0.8 * overlap[i].max(0.0).powf(2.5))
-        .sum()
+    (40..beads - 1).map(|i| velocity[i] * velocity[i] + 0.8 * overlap[i].max(0.0).powf(2.5)).sum()
 }

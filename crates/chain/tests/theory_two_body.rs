@@ -8,12 +8,7 @@ use hertzchain_chain::theory::two_body::{
 use std::f64::consts::PI;
 
 fn unit_collision(exponent: f64) -> ElasticCollision {
-    ElasticCollision {
-        exponent,
-        stiffness: 1.0,
-        reduced_mass_kg: 1.0,
-        speed_m_s: 1.0,
-    }
+    ElasticCollision { exponent, stiffness: 1.0, reduced_mass_kg: 1.0, speed_m_s: 1.0 }
 }
 
 #[test]
@@ -37,10 +32,7 @@ fn contact_time_scales_as_speed_to_minus_one_fifth() {
         reduced_mass_kg: 4.27e-3,
         speed_m_s: 0.1,
     };
-    let fast = ElasticCollision {
-        speed_m_s: 3.2,
-        ..slow
-    };
+    let fast = ElasticCollision { speed_m_s: 3.2, ..slow };
     // Roundings of a few powers.
     assert!((slow.contact_time_s() / fast.contact_time_s() - 2.0).abs() < 1e-14);
 }
@@ -164,13 +156,7 @@ fn dimensional_rebound_is_the_scaled_one() {
 
 #[test]
 fn parameters_out_of_range_are_refused() {
-    for (exponent, x) in [
-        (0.5, 0.1),
-        (f64::NAN, 0.1),
-        (1.5, -0.1),
-        (1.5, f64::NAN),
-        (1.5, 1e9),
-    ] {
+    for (exponent, x) in [(0.5, 0.1), (f64::NAN, 0.1), (1.5, -0.1), (1.5, f64::NAN), (1.5, 1e9)] {
         let refused = rebound(exponent, x, ContactEnd::ZeroOverlap);
         assert!(matches!(refused, Err(ChainError::Value { .. })));
     }

@@ -29,13 +29,8 @@ fn a_contact_that_closes_after_a_long_flight_is_landed_on() {
         ..row(3, 0.1, vec![hertz()])
     };
     let laws = vec![hertz(), viscoelastic(), cubic()];
-    let gaps = (0..=5)
-        .map(|c| gap(c, 1e-4 * (1 + 7 * c % 5) as f64))
-        .collect();
-    let loose = Chain {
-        gaps,
-        ..row(5, 0.5, laws)
-    };
+    let gaps = (0..=5).map(|c| gap(c, 1e-4 * (1 + 7 * c % 5) as f64)).collect();
+    let loose = Chain { gaps, ..row(5, 0.5, laws) };
     for tolerance in [1e-9, 5e-12] {
         for chain in [&falling, &loose] {
             let outcome = at(chain, tolerance, 2e-2, false);
@@ -47,10 +42,7 @@ fn a_contact_that_closes_after_a_long_flight_is_landed_on() {
 
 #[test]
 fn a_driven_end_is_not_stepped_over_while_nothing_touches() {
-    let motion = Motion::Sine {
-        amplitude_m: 1e-4,
-        frequency_hz: 1e3,
-    };
+    let motion = Motion::Sine { amplitude_m: 1e-4, frequency_hz: 1e3 };
     let chain = Chain {
         start: Start::Driven { bead: BALL, motion },
         gaps: vec![gap(0, 0.99e-4)],
@@ -59,41 +51,22 @@ fn a_driven_end_is_not_stepped_over_while_nothing_touches() {
     };
     let outcome = at(&chain, 1e-8, 2e-3, false);
     // The driver is all but at rest where it meets the bead: some cm/s.
-    assert!(
-        outcome.velocity_m_s[1] > 1e-2,
-        "{}",
-        outcome.velocity_m_s[1]
-    );
+    assert!(outcome.velocity_m_s[1] > 1e-2, "{}", outcome.velocity_m_s[1]);
 }
 
 #[test]
 fn a_spring_without_force_still_pushes_a_bead_that_comes_back() {
-    let push = Push::Spring {
-        force_n: 0.0,
-        stiffness_n_m: 1e4,
-    };
-    let chain = Chain {
-        push,
-        ..row(600, 0.5, vec![hertz()])
-    };
+    let push = Push::Spring { force_n: 0.0, stiffness_n_m: 1e4 };
+    let chain = Chain { push, ..row(600, 0.5, vec![hertz()]) };
     let (part, whole) = (at(&chain, 1e-8, 9e-3, false), at(&chain, 1e-8, 9e-3, true));
-    assert_eq!(
-        part.velocity_m_s[1].to_bits(),
-        whole.velocity_m_s[1].to_bits()
-    );
+    assert_eq!(part.velocity_m_s[1].to_bits(), whole.velocity_m_s[1].to_bits());
     assert!(part.budget.unwrap().relative_residual().abs() < 2e-5);
 }
 
 #[test]
 fn nothing_acts_across_a_contact_that_does_not_exist() {
-    let ungated = law(DampingCubicUngated(DampingCubic {
-        coefficient_kg_s_m2: 77.0,
-    }));
-    let moving = |bead| Initial {
-        bead,
-        displacement_m: 0.0,
-        velocity_m_s: 1.0,
-    };
+    let ungated = law(DampingCubicUngated(DampingCubic { coefficient_kg_s_m2: 77.0 }));
+    let moving = |bead| Initial { bead, displacement_m: 0.0, velocity_m_s: 1.0 };
     let chain = Chain {
         start: Start::Free,
         far: FarEnd::Free,
@@ -106,35 +79,17 @@ fn nothing_acts_across_a_contact_that_does_not_exist() {
 /// The wall is a dashpot: its force is largest at the very touch.
 #[test]
 fn a_maximum_at_a_force_jump_out_of_silence_is_seen() {
-    let dashpot = law(DampingLinear {
-        coefficient_n_s_m: 3000.0,
-    });
-    let section = |contacts, laws| Section {
-        contacts,
-        laws,
-        material: None,
-    };
+    let dashpot = law(DampingLinear { coefficient_n_s_m: 3000.0 });
+    let section = |contacts, laws| Section { contacts, laws, material: None };
     let chain = Chain {
-        sections: vec![
-            section(0..=4, vec![hertz()]),
-            section(5..=5, vec![hertz(), dashpot]),
-        ],
+        sections: vec![section(0..=4, vec![hertz()]), section(5..=5, vec![hertz(), dashpot])],
         gaps: vec![gap(5, 1e-5)],
         ..row(5, 0.5, vec![])
     };
     let system = System::new(&chain).unwrap();
-    let (mut wall, mut bead) = (
-        Signal::new(Sensor::Contact(5)),
-        Signal::new(Sensor::Velocity(5)),
-    );
+    let (mut wall, mut bead) = (Signal::new(Sensor::Contact(5)), Signal::new(Sensor::Velocity(5)));
     let method = DormandPrince { tolerance: 1e-9 };
-    run(
-        &system,
-        &method,
-        Limits::until(3e-4),
-        &mut [&mut wall, &mut bead],
-    )
-    .unwrap();
+    run(&system, &method, Limits::until(3e-4), &mut [&mut wall, &mut bead]).unwrap();
     let speed = bead.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
     let peak = wall.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
     close(peak, 3000.0 * speed, 1e-6);
@@ -142,10 +97,7 @@ fn a_maximum_at_a_force_jump_out_of_silence_is_seen() {
 
 #[test]
 fn a_shot_between_free_ends_ends_when_all_fly_apart() {
-    let chain = Chain {
-        far: FarEnd::Free,
-        ..row(2, 0.5, vec![hertz()])
-    };
+    let chain = Chain { far: FarEnd::Free, ..row(2, 0.5, vec![hertz()]) };
     let system = System::new(&chain).unwrap();
     let method = DormandPrince { tolerance: 1e-8 };
     let outcome = run(&system, &method, Limits::until(0.1), &mut [&mut Apart]).unwrap();
@@ -154,28 +106,14 @@ fn a_shot_between_free_ends_ends_when_all_fly_apart() {
 
 #[test]
 fn every_bead_of_a_ring_has_a_sensor() {
-    let initial = vec![Initial {
-        bead: 5,
-        displacement_m: 0.0,
-        velocity_m_s: 1.0,
-    }];
+    let initial = vec![Initial { bead: 5, displacement_m: 0.0, velocity_m_s: 1.0 }];
     let far = FarEnd::Periodic { force_n: 0.0 };
-    let chain = Chain {
-        start: Start::Free,
-        initial,
-        ..unit_row(10, 1.0, far)
-    };
+    let chain = Chain { start: Start::Free, initial, ..unit_row(10, 1.0, far) };
     let system = System::new(&chain).unwrap();
     let mut first = Signal::new(Sensor::Bead(1));
     let mut nowhere = Signal::new(Sensor::Bead(0));
     let method = DormandPrince { tolerance: 1e-8 };
-    run(
-        &system,
-        &method,
-        Limits::until(20.0),
-        &mut [&mut first, &mut nowhere],
-    )
-    .unwrap();
+    run(&system, &method, Limits::until(20.0), &mut [&mut first, &mut nowhere]).unwrap();
     assert!(!first.maxima().is_empty());
     assert!(nowhere.maxima().is_empty());
 }
@@ -183,50 +121,22 @@ fn every_bead_of_a_ring_has_a_sensor() {
 #[test]
 fn a_striker_hangs_on_a_thread_like_the_balls_it_hits() {
     let suspension_m = Some(0.1);
-    let chain = Chain {
-        far: FarEnd::Free,
-        suspension_m,
-        ..row(3, 0.5, vec![hertz()])
-    };
-    let residual = at(&chain, 1e-9, 0.05, false)
-        .budget
-        .unwrap()
-        .relative_residual();
+    let chain = Chain { far: FarEnd::Free, suspension_m, ..row(3, 0.5, vec![hertz()]) };
+    let residual = at(&chain, 1e-9, 0.05, false).budget.unwrap().relative_residual();
     assert!(residual.abs() < 3e-7, "{residual:e}");
 }
 
 #[test]
 fn a_ring_on_threads_stays_closed() {
-    let initial = vec![Initial {
-        bead: 1,
-        displacement_m: 0.0,
-        velocity_m_s: 0.1,
-    }];
+    let initial = vec![Initial { bead: 1, displacement_m: 0.0, velocity_m_s: 0.1 }];
     let far = FarEnd::Periodic { force_n: 1.0 };
-    let ring = Chain {
-        start: Start::Free,
-        far,
-        initial,
-        ..row(6, 1.0, vec![hertz()])
-    };
-    let chain = Chain {
-        suspension_m: Some(0.1),
-        ..ring
-    };
+    let ring = Chain { start: Start::Free, far, initial, ..row(6, 1.0, vec![hertz()]) };
+    let chain = Chain { suspension_m: Some(0.1), ..ring };
     // Threads cannot hang under a load along the row.
-    assert!(matches!(
-        System::new(&chain),
-        Err(ChainError::Equilibrium(_))
-    ));
-    let loose = Chain {
-        far: FarEnd::Periodic { force_n: 0.0 },
-        ..chain
-    };
+    assert!(matches!(System::new(&chain), Err(ChainError::Equilibrium(_))));
+    let loose = Chain { far: FarEnd::Periodic { force_n: 0.0 }, ..chain };
     let outcome = at(&loose, 1e-9, 1e-2, false);
-    assert_eq!(
-        outcome.displacement_m[1].to_bits(),
-        outcome.displacement_m[7].to_bits()
-    );
+    assert_eq!(outcome.displacement_m[1].to_bits(), outcome.displacement_m[7].to_bits());
     let residual = outcome.budget.unwrap().relative_residual();
     // Ten thousand steps of many collisions, each wrong by up to the tolerance.
     assert!(residual.abs() < 1e-5, "{residual:e}");
@@ -237,13 +147,8 @@ fn the_window_changes_no_bit_of_a_fixed_step_method_either() {
     let laws = vec![hertz(), viscoelastic(), cubic()];
     let system = System::new(&row(60, 0.5, laws)).unwrap();
     let shot = |whole_chain| {
-        let limits = Limits {
-            whole_chain,
-            ..Limits::until(5e-4)
-        };
-        run(&system, &Verlet { step_s: 1e-7 }, limits, &mut [])
-            .unwrap()
-            .velocity_m_s
+        let limits = Limits { whole_chain, ..Limits::until(5e-4) };
+        run(&system, &Verlet { step_s: 1e-7 }, limits, &mut []).unwrap().velocity_m_s
     };
     assert_eq!(shot(true), shot(false));
 }
@@ -258,38 +163,15 @@ fn settings_and_motions_that_mean_nothing_are_refused() {
         let method = DormandPrince { tolerance };
         assert!(run(&system, &method, Limits::until(1e-5), &mut []).is_err());
     }
-    let endless = Limits {
-        force_passes: Some(1000),
-        ..Limits::until(f64::INFINITY)
-    };
-    assert!(
-        run(
-            &system,
-            &DormandPrince { tolerance: 1e-6 },
-            endless,
-            &mut []
-        )
-        .is_err()
-    );
+    let endless = Limits { force_passes: Some(1000), ..Limits::until(f64::INFINITY) };
+    assert!(run(&system, &DormandPrince { tolerance: 1e-6 }, endless, &mut []).is_err());
     let tables = [
         (vec![0.0, 1.0], vec![0.0]),
         (vec![1.0, 0.0], vec![0.0, 1.0]),
         (vec![0.0, f64::NAN], vec![0.0, 1.0]),
     ];
     for (times_s, positions_m) in tables {
-        let start = Start::Driven {
-            bead: BALL,
-            motion: Motion::Table {
-                times_s,
-                positions_m,
-            },
-        };
-        assert!(
-            System::new(&Chain {
-                start,
-                ..row(3, 0.5, vec![hertz()])
-            })
-            .is_err()
-        );
+        let start = Start::Driven { bead: BALL, motion: Motion::Table { times_s, positions_m } };
+        assert!(System::new(&Chain { start, ..row(3, 0.5, vec![hertz()]) }).is_err());
     }
 }

@@ -7,10 +7,7 @@ use hertzchain_chain::*;
 
 fn run_window(chain: &Chain, duration_s: f64, whole_chain: bool) -> Outcome {
     let system = System::new(chain).unwrap();
-    let limits = Limits {
-        whole_chain,
-        ..Limits::until(duration_s)
-    };
+    let limits = Limits { whole_chain, ..Limits::until(duration_s) };
     run(&system, &DormandPrince { tolerance: 1e-7 }, limits, &mut []).unwrap()
 }
 
@@ -18,16 +15,9 @@ fn run_window(chain: &Chain, duration_s: f64, whole_chain: bool) -> Outcome {
 fn without_preload_the_window_is_exact_to_the_bit_and_saves_work() {
     let laws = vec![hertz(), viscoelastic(), cubic()];
     let chain = row(200, 0.5, laws);
-    let (part, whole) = (
-        run_window(&chain, 2e-3, false),
-        run_window(&chain, 2e-3, true),
-    );
+    let (part, whole) = (run_window(&chain, 2e-3, false), run_window(&chain, 2e-3, true));
     let bits = |o: &Outcome| -> Vec<u64> {
-        o.velocity_m_s
-            .iter()
-            .chain(&o.displacement_m)
-            .map(|x| x.to_bits())
-            .collect()
+        o.velocity_m_s.iter().chain(&o.displacement_m).map(|x| x.to_bits()).collect()
     };
     assert_eq!(bits(&part), bits(&whole));
     assert!(part.work.bodies_passed * 10 < whole.work.bodies_passed * 7);
@@ -36,14 +26,8 @@ fn without_preload_the_window_is_exact_to_the_bit_and_saves_work() {
 #[test]
 fn under_preload_the_window_changes_nothing_that_matters() {
     let push = Push::Constant { force_n: 5.0 };
-    let chain = Chain {
-        push,
-        ..row(200, 0.5, vec![hertz(), viscoelastic()])
-    };
-    let (part, whole) = (
-        run_window(&chain, 1e-3, false),
-        run_window(&chain, 1e-3, true),
-    );
+    let chain = Chain { push, ..row(200, 0.5, vec![hertz(), viscoelastic()]) };
+    let (part, whole) = (run_window(&chain, 1e-3, false), run_window(&chain, 1e-3, true));
     for (a, b) in part.velocity_m_s.iter().zip(&whole.velocity_m_s) {
         assert!((a - b).abs() < 1e-12 * 0.5, "{a} {b}");
     }
@@ -61,13 +45,8 @@ fn a_pulse_keeps_speed_and_amplitude_over_a_hundred_thousand_beads() {
     let mut late = Signal::new(Sensor::Velocity(beads - 20));
     let duration = beads as f64 / 0.840_508_77;
     let method = DormandPrince { tolerance: 3e-11 };
-    let outcome = run(
-        &system,
-        &method,
-        Limits::until(duration),
-        &mut [&mut early, &mut late],
-    )
-    .unwrap();
+    let outcome =
+        run(&system, &method, Limits::until(duration), &mut [&mut early, &mut late]).unwrap();
     let (first, last) = (early.maxima()[0], late.maxima()[0]);
     let distance = (beads - 120) as f64;
     close(last.value, first.value, 1e-6);
@@ -91,16 +70,9 @@ fn beads_asleep_where_the_wave_has_been_change_nothing_that_matters() {
         let chain = row(700, 0.8, laws);
         // Far enough for the pulse to come back to the middle.
         let duration = 2.6e-2;
-        let (part, whole) = (
-            run_window(&chain, duration, false),
-            run_window(&chain, duration, true),
-        );
-        for (i, (a, b)) in part
-            .velocity_m_s
-            .iter()
-            .zip(&whole.velocity_m_s)
-            .enumerate()
-        {
+        let (part, whole) =
+            (run_window(&chain, duration, false), run_window(&chain, duration, true));
+        for (i, (a, b)) in part.velocity_m_s.iter().zip(&whole.velocity_m_s).enumerate() {
             // A thousand times the tolerance: both runs are that wrong by then.
             assert!((a - b).abs() < 1e-4 * 0.8, "body {i}: {a} {b}");
         }
@@ -114,16 +86,9 @@ fn a_second_clock_for_what_creeps_changes_nothing_that_matters_and_saves_work() 
         let system = System::new(&row(600, 0.8, laws)).unwrap();
         let fly = |whole_chain: bool| {
             let mut sensor = Signal::new(Sensor::Bead(400));
-            let limits = Limits {
-                whole_chain,
-                budget: true,
-                ..Limits::until(1.9e-2)
-            };
+            let limits = Limits { whole_chain, budget: true, ..Limits::until(1.9e-2) };
             let method = DormandPrince { tolerance: 3e-9 };
-            let limits = Limits {
-                slow_tolerance: Some(1e-7),
-                ..limits
-            };
+            let limits = Limits { slow_tolerance: Some(1e-7), ..limits };
             let outcome = run(&system, &method, limits, &mut [&mut sensor]).unwrap();
             let residual = outcome.budget.unwrap().relative_residual();
             // The residual is up to 880 times the tolerance after 1,000 beads.
@@ -133,8 +98,7 @@ fn a_second_clock_for_what_creeps_changes_nothing_that_matters_and_saves_work() 
         let ((part, cheap), (whole, dear)) = (fly(false), fly(true));
         let largest = |from_s: f64, maxima: &[Maximum]| {
             let late = maxima.iter().filter(|peak| peak.time_s > from_s).copied();
-            late.reduce(|best, peak| if peak.value > best.value { peak } else { best })
-                .unwrap()
+            late.reduce(|best, peak| if peak.value > best.value { peak } else { best }).unwrap()
         };
         for from_s in [0.0, 1.5e-2] {
             let (one, two) = (largest(from_s, &part), largest(from_s, &whole));
@@ -142,9 +106,6 @@ fn a_second_clock_for_what_creeps_changes_nothing_that_matters_and_saves_work() 
             close(one.time_s, two.time_s, 1e-6);
             close(one.value, two.value, 1e-5);
         }
-        assert!(
-            cheap.bodies_passed * 2 < dear.bodies_passed,
-            "{cheap:?} {dear:?}"
-        );
+        assert!(cheap.bodies_passed * 2 < dear.bodies_passed, "{cheap:?} {dear:?}");
     }
 }

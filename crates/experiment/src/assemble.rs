@@ -24,16 +24,10 @@ pub(crate) fn chain(
     let speed_m_s = striker_speed(spec, speed_m_s)?;
     let (materials, mut warnings) = materials(spec, speed_m_s)?;
     let mut beads = Vec::new();
-    spec.groups
-        .iter()
-        .for_each(|group| group.append(&materials, &mut beads));
+    spec.groups.iter().for_each(|group| group.append(&materials, &mut beads));
     beads.truncate(spec.bead_count());
     let (Some(first), Some(last)) = (beads.first(), beads.last()) else {
-        return Err(FileProblem::new(
-            &(0..0),
-            "the chain has no beads",
-            "expected at least one",
-        ));
+        return Err(FileProblem::new(&(0..0), "the chain has no beads", "expected at least one"));
     };
     warnings.extend(inelastic(spec));
     warnings.extend(closed_gaps(spec));
@@ -68,10 +62,9 @@ fn striker_speed(spec: &Spec, asked_m_s: Option<f64>) -> Result<Option<f64>, Fil
             let label = format!("expected a positive, finite speed, {}", limits.words);
             Err(FileProblem::new(&spec.near.span(), asked(speed), label))
         }
-        (None, Some(speed)) => Err(no_striker(
-            spec,
-            format!("{}, but there is no striker", asked(speed)),
-        )),
+        (None, Some(speed)) => {
+            Err(no_striker(spec, format!("{}, but there is no striker", asked(speed))))
+        }
         (own, None) => Ok(own),
     }
 }
@@ -89,10 +82,7 @@ fn materials(
 ) -> Result<(Vec<Material>, Vec<FileProblem>), FileProblem> {
     let used = spec.used_materials();
     let sections = spec.cases.iter().filter_map(|case| case.sections.as_ref());
-    let of_cases: Vec<usize> = sections
-        .flatten()
-        .filter_map(|section| section.material)
-        .collect();
+    let of_cases: Vec<usize> = sections.flatten().filter_map(|section| section.material).collect();
     let mut materials = Vec::new();
     let mut warnings = Vec::new();
     for (index, material) in spec.materials.0.iter().enumerate() {
@@ -105,11 +95,7 @@ fn materials(
         materials.push(Material::RIGID);
         if !of_cases.contains(&index) {
             let message = format!("nothing is made of `{}`", material.name);
-            warnings.push(FileProblem::new(
-                &material.span,
-                message,
-                "this material is not used",
-            ));
+            warnings.push(FileProblem::new(&material.span, message, "this material is not used"));
         }
     }
     Ok((materials, warnings))
@@ -122,10 +108,9 @@ fn start(
     materials: &[Material],
 ) -> Result<Start, FileProblem> {
     match (&spec.near, speed_m_s) {
-        (Near::Striker { shape, .. }, Some(speed_m_s)) => Ok(Start::Striker {
-            bead: striker(spec, shape, first, materials)?,
-            speed_m_s,
-        }),
+        (Near::Striker { shape, .. }, Some(speed_m_s)) => {
+            Ok(Start::Striker { bead: striker(spec, shape, first, materials)?, speed_m_s })
+        }
         (Near::Driven { shape, motion }, _) => Ok(Start::Driven {
             bead: Bead {
                 radius_m: shape.radius_m.unwrap_or(first.radius_m),
@@ -153,9 +138,7 @@ fn striker(
     let radius_m = shape.radius_m.unwrap_or(first.radius_m);
     let like_bead_1 = radius_m == first.radius_m && shape.material.is_none();
     let of_bead_1 = || spec.groups.first()?.cell.first()?.material;
-    let density = spec
-        .materials
-        .density_kg_m3(shape.material.or_else(of_bead_1));
+    let density = spec.materials.density_kg_m3(shape.material.or_else(of_bead_1));
     let own = like_bead_1.then_some(first.mass_kg);
     let full = density.map(|density| sphere_mass_kg(radius_m, density));
     let label =
@@ -170,20 +153,12 @@ fn striker(
 
 fn far(far: &Far, last: &Bead, materials: &[Material]) -> FarEnd {
     match far {
-        Far::Wall {
-            is_plane,
-            shape,
-            stop_kg,
-        } => {
+        Far::Wall { is_plane, shape, stop_kg } => {
             let material = material_of(shape, materials).unwrap_or(last.material);
             let radius_m = shape.radius_m.unwrap_or(last.radius_m);
             match (is_plane, *stop_kg) {
                 (false, None) => FarEnd::HalfBead { radius_m, material },
-                (false, Some(mass_kg)) => FarEnd::Stop {
-                    radius_m,
-                    material,
-                    mass_kg,
-                },
+                (false, Some(mass_kg)) => FarEnd::Stop { radius_m, material, mass_kg },
                 (true, None) => FarEnd::Plane { material },
                 (true, Some(mass_kg)) => FarEnd::PlaneStop { material, mass_kg },
             }
@@ -278,19 +253,16 @@ impl Reference {
         });
         let own_value = contact.and_then(value);
         let ratio = |contact: usize| Some(value(contact)? / own_value?);
-        let [least, most] = (first..=last).filter_map(ratio).fold(
-            [f64::INFINITY, f64::NEG_INFINITY],
-            |[least, most], ratio| [least.min(ratio), most.max(ratio)],
-        );
+        let [least, most] = (first..=last)
+            .filter_map(ratio)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], ratio| {
+                [least.min(ratio), most.max(ratio)]
+            });
         Self {
             contact,
             contacts: first..=last,
             own_value,
-            ratios: if least <= most {
-                [least, most]
-            } else {
-                [1.0; 2]
-            },
+            ratios: if least <= most { [least, most] } else { [1.0; 2] },
         }
     }
 }
@@ -310,15 +282,8 @@ fn own_value(law: &str, parameter: &str, pair: &Pair) -> Option<f64> {
 
 /// The chain with all contacts of one material, or each of its bodies' own.
 fn of_one_material(chain: &Chain, material: Option<Material>) -> Chain {
-    let section = Section {
-        contacts: 0..=chain.beads.len(),
-        laws: Vec::new(),
-        material,
-    };
-    Chain {
-        sections: vec![section],
-        ..chain.clone()
-    }
+    let section = Section { contacts: 0..=chain.beads.len(), laws: Vec::new(), material };
+    Chain { sections: vec![section], ..chain.clone() }
 }
 
 /// Sections in which each contact has its own values of what belongs to a reference
@@ -340,11 +305,7 @@ fn scaled_sections(spec: &Spec, chain: &Chain) -> Result<Vec<Section>, FileProbl
                     *contacts = *contacts.start()..=contact;
                 }
                 _ => {
-                    let laws = of
-                        .laws
-                        .iter()
-                        .zip(&values)
-                        .map(|(law, given)| law.build(given));
+                    let laws = of.laws.iter().zip(&values).map(|(law, given)| law.build(given));
                     all.push(Section {
                         contacts: contact..=contact,
                         laws: laws.collect::<Result<_, _>>()?,

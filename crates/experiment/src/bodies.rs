@@ -76,10 +76,7 @@ pub(crate) fn expected_material(names: &[&str]) -> String {
     match names {
         [] => "expected the name of a table [materials.NAME], in quotes".to_owned(),
         [only] => format!("expected \"{only}\", the file's only material"),
-        _ => format!(
-            "expected one of the file's materials: \"{}\"",
-            names.join("\", \"")
-        ),
+        _ => format!("expected one of the file's materials: \"{}\"", names.join("\", \"")),
     }
 }
 
@@ -137,11 +134,7 @@ impl MaterialSpec {
             young_modulus_pa,
             poisson_ratio,
             shear_viscosity_pa_s,
-            bulk_viscosity_pa_s: if self.without_bulk_viscosity {
-                0.0
-            } else {
-                bulk
-            },
+            bulk_viscosity_pa_s: if self.without_bulk_viscosity { 0.0 } else { bulk },
         };
         Ok((material, self.beyond_half(poisson_ratio, speed_m_s)))
     }
@@ -180,10 +173,7 @@ impl SpeedLaw {
         let message = || format!("{name} is {}{at}", to_digits(value, 6));
         let problem =
             || FileProblem::new(&self.span, message(), format!("expected a value {words}"));
-        self.limits
-            .hold(bounded)
-            .then_some(bounded)
-            .ok_or_else(problem)
+        self.limits.hold(bounded).then_some(bounded).ok_or_else(problem)
     }
 }
 
@@ -255,22 +245,14 @@ pub(crate) fn groups(
         && parts.any(|part| part.material.is_some())
     {
         let message = "these beads have no material, but others do";
-        return Err(FileProblem::new(
-            &group.span,
-            message,
-            "expected `material = \"name\"`",
-        ));
+        return Err(FileProblem::new(&group.span, message, "expected `material = \"name\"`"));
     }
     let mut total = 0usize;
     for group in &groups {
         total = total.saturating_add(group.count());
         if total as u64 > MOST_BEADS as u64 {
             let message = format!("the chain has more than {MOST_BEADS} beads");
-            return Err(FileProblem::new(
-                &group.span,
-                message,
-                "expected fewer here",
-            ));
+            return Err(FileProblem::new(&group.span, message, "expected fewer here"));
         }
     }
     Ok(groups)
@@ -279,10 +261,7 @@ pub(crate) fn groups(
 fn group(table: &View<'_>, materials: &Materials) -> Result<BeadGroup, FileProblem> {
     let has_cell = table.has("cell");
     let (foreign, why): (&[&str], _) = match has_cell {
-        true => (
-            &["count", "radius", "mass", "material"],
-            "with a cell; use `repeat`",
-        ),
+        true => (&["count", "radius", "mass", "material"], "with a cell; use `repeat`"),
         false => (&["repeat"], "without a cell; use `count`"),
     };
     if let Some(key) = foreign.iter().find(|key| table.has(key)) {
@@ -291,9 +270,7 @@ fn group(table: &View<'_>, materials: &Materials) -> Result<BeadGroup, FileProbl
     }
     let count = table.count(if has_cell { "repeat" } else { "count" })?;
     let tables = table.tables("cell");
-    let cells = tables
-        .iter()
-        .map(|cell| part(cell, materials, cell.count("count")?));
+    let cells = tables.iter().map(|cell| part(cell, materials, cell.count("count")?));
     let group = BeadGroup {
         cell: match has_cell {
             true => cells.collect::<Result<_, _>>()?,

@@ -11,12 +11,7 @@ use crate::values::{ExpectedQuantity, HAS_NONE, HAS_ONE, POWER_LAW, Units, whole
 
 /// Checks a whole document.
 pub(crate) fn check(tree: &Node, units: Units) -> Result<(), Vec<FileProblem>> {
-    let mut check = FormCheck {
-        tree,
-        units,
-        problems: Vec::new(),
-        fitting: 0,
-    };
+    let mut check = FormCheck { tree, units, problems: Vec::new(), fitting: 0 };
     check.table(tree, &ROOT, None);
     match check.problems.is_empty() {
         true => Ok(()),
@@ -83,14 +78,13 @@ impl FormCheck<'_> {
         if let Some(place) = keys::home(key) {
             problem = problem.help(format!("`{key}` belongs {place}"));
         }
-        self.problems
-            .push(match keys::advice_on_key(fields.title, key) {
-                Some(advice) => problem.help(advice),
-                None if fields.title == ROOT.title && is_material(&entry.node) => {
-                    problem.help(format!("a material is written [materials.{key}]"))
-                }
-                None => problem.nearest(fields.slip_of(key).or_else(|| nearest_word(key, tag))),
-            });
+        self.problems.push(match keys::advice_on_key(fields.title, key) {
+            Some(advice) => problem.help(advice),
+            None if fields.title == ROOT.title && is_material(&entry.node) => {
+                problem.help(format!("a material is written [materials.{key}]"))
+            }
+            None => problem.nearest(fields.slip_of(key).or_else(|| nearest_word(key, tag))),
+        });
     }
 
     fn value(&mut self, key: &'static Key, node: &Node) {
@@ -125,9 +119,7 @@ impl FormCheck<'_> {
             Kind::Named(fields) => self.named(key, node, fields),
             Kind::Variants(variants) => self.variants(node, variants),
             Kind::Laws => self.each(key, node, |check, member| {
-                check
-                    .problems
-                    .extend(contacts::check_law(member, check.units));
+                check.problems.extend(contacts::check_law(member, check.units));
             }),
         }
     }
@@ -172,14 +164,7 @@ impl FormCheck<'_> {
 
     fn quantity(&mut self, name: &str, unit: &str, limits: ValueLimits, node: &Node) {
         let units = self.units;
-        match (ExpectedQuantity {
-            name,
-            unit,
-            limits,
-            units,
-        })
-        .read(node)
-        {
+        match (ExpectedQuantity { name, unit, limits, units }).read(node) {
             Ok(_) => self.fitting += usize::from(unit != "1"),
             Err(problem) => self.problems.push(problem),
         }
@@ -241,11 +226,10 @@ impl FormCheck<'_> {
         };
         let label = format!("expected one of: \"{}\"", options.join("\", \""));
         let problem = FileProblem::new(&node.span, message, label);
-        self.problems
-            .push(match keys::advice_on_option(name, text) {
-                Some(advice) => problem.help(advice),
-                None => problem.nearest(nearest_word(text, options.iter().copied())),
-            });
+        self.problems.push(match keys::advice_on_option(name, text) {
+            Some(advice) => problem.help(advice),
+            None => problem.nearest(nearest_word(text, options.iter().copied())),
+        });
     }
 
     fn named(&mut self, key: &Key, node: &Node, fields: &'static Fields) {
@@ -299,10 +283,7 @@ impl FormCheck<'_> {
             return self.add(&node.span, format!("{title} has no `{tag}`"), label);
         };
         let message = format!("{title} has no key `{}`, and needs `{tag}`", entry.key);
-        let advice = entry
-            .node
-            .text()
-            .and_then(|text| keys::advice_on_option(tag, text));
+        let advice = entry.node.text().and_then(|text| keys::advice_on_option(tag, text));
         let problem = FileProblem::new(&entry.key_span, message, label);
         self.problems.push(match advice {
             Some(advice) => problem.help(advice),
@@ -325,9 +306,7 @@ fn bead_count(tree: &Node) -> Option<i64> {
         None => count(table, "count"),
         Some(cell) => {
             let parts = cell.members().iter().map(|part| count(part, "count"));
-            parts
-                .sum::<Option<i64>>()?
-                .checked_mul(count(table, "repeat")?)
+            parts.sum::<Option<i64>>()?.checked_mul(count(table, "repeat")?)
         }
     };
     let beads: i64 = tree.list("beads").iter().map(group).sum::<Option<i64>>()?;

@@ -148,21 +148,13 @@ fn law(node: &Node, units: Units) -> Result<LawSpec, FileProblem> {
     let (mut given, mut references) = (Vec::new(), Vec::new());
     for parameter in row.info.parameters {
         if let Some(value) = node.get(parameter.name) {
-            given.push((
-                parameter.name,
-                value_of(parameter, row, node, units, value)?,
-            ));
+            given.push((parameter.name, value_of(parameter, row, node, units, value)?));
             let own = contact.filter(|_| is_derived(parameter));
             references.extend(own.map(|contact| (parameter.name, contact)));
         }
     }
     let span = node.span.clone();
-    Ok(LawSpec {
-        row,
-        given,
-        references,
-        span,
-    })
+    Ok(LawSpec { row, given, references, span })
 }
 
 /// The contact that a law's K or A belongs to, where the file names one.
@@ -195,11 +187,7 @@ pub(crate) fn row_of(node: &Node) -> Result<&'static Row, FileProblem> {
     };
     let Some(text) = name.text() else {
         let message = format!("a law is {}", name.kind());
-        return Err(FileProblem::new(
-            &name.span,
-            message,
-            "expected a law's name in quotes",
-        ));
+        return Err(FileProblem::new(&name.span, message, "expected a law's name in quotes"));
     };
     find(text).ok_or_else(|| {
         let names: Vec<&str> = LAWS.iter().map(|row| row.info.name).collect();
@@ -268,12 +256,8 @@ fn exponent(parameter: &Parameter, node: &Node, units: Units) -> String {
         Source::Default(value) => value,
         _ => 1.0,
     };
-    let plain = ExpectedQuantity {
-        name: parameter.name,
-        unit: "1",
-        limits: ValueLimits::ANY,
-        units,
-    };
+    let plain =
+        ExpectedQuantity { name: parameter.name, unit: "1", limits: ValueLimits::ANY, units };
     let value = node.get(parameter.name).and_then(|n| plain.read(n).ok());
     let value = value.map_or(fallback, |si| si.value);
     // Nine decimals are more than dimensions are compared to.
@@ -378,13 +362,11 @@ fn each_once(laws: &[LawSpec]) -> Result<(), FileProblem> {
         let same = |other: &&LawSpec| other.name() == law.name() && other.given == law.given;
         if let Some(first) = laws.iter().take(index).find(same) {
             let message = format!("law `{}` stands twice in this section", law.name());
-            return Err(
-                FileProblem::new(&law.span, message, "expected each term once")
-                    .also(&first.span, "the first one is here")
-                    .help(
-                        "forces of laws add, so this would double them; change a parameter instead",
-                    ),
-            );
+            return Err(FileProblem::new(&law.span, message, "expected each term once")
+                .also(&first.span, "the first one is here")
+                .help(
+                    "forces of laws add, so this would double them; change a parameter instead",
+                ));
         }
     }
     Ok(())
@@ -395,9 +377,7 @@ fn each_once(laws: &[LawSpec]) -> Result<(), FileProblem> {
 fn fill_stiffness(section: &mut SectionSpec, bare: bool) -> Result<(), FileProblem> {
     let bare = bare && section.material.is_none();
     let unit_stiffness = |laws: &mut [LawSpec], dissipative: bool| {
-        let wanted = laws
-            .iter_mut()
-            .filter(|law| bare && law.is_dissipative() == dissipative);
+        let wanted = laws.iter_mut().filter(|law| bare && law.is_dissipative() == dissipative);
         let left = wanted.filter(|law| law.leaves_out_stiffness(Source::is_derived));
         left.for_each(|law| law.given.push((STIFFNESS, 1.0)));
     };
@@ -425,8 +405,7 @@ fn shared_stiffness(laws: &mut [LawSpec]) -> Result<(), FileProblem> {
             // One `elastic_hertz` has a number, another follows from the materials.
             let stiffness = sum.ok_or_else(|| unclear(law))?;
             law.given.push((STIFFNESS, stiffness));
-            law.references
-                .extend(reference.map(|contact| (STIFFNESS, contact)));
+            law.references.extend(reference.map(|contact| (STIFFNESS, contact)));
         }
     }
     Ok(())
@@ -463,11 +442,7 @@ fn covered(sections: &[SectionSpec], beads: usize) -> Result<(), FileProblem> {
 fn uncovered(section: &SectionSpec, from: usize, to: usize) -> FileProblem {
     let verb = if from == to { "has" } else { "have" };
     let message = format!("{} {verb} no laws", contacts(from, to));
-    FileProblem::new(
-        &section.span,
-        message,
-        "expected sections that leave out no contact",
-    )
+    FileProblem::new(&section.span, message, "expected sections that leave out no contact")
 }
 
 /// "contact 3" or "contacts 3 to 5".

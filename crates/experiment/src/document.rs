@@ -49,21 +49,13 @@ impl Value {
     /// A number in SI that a program sets.
     pub(crate) const fn from_code(value: f64, half_digit: f64) -> Self {
         let from_code = true;
-        Self::Number(Number {
-            value,
-            half_digit,
-            from_code,
-        })
+        Self::Number(Number { value, half_digit, from_code })
     }
 
     /// A number as the file writes it.
     pub(crate) const fn number(value: f64, half_digit: f64) -> Self {
         let from_code = false;
-        Self::Number(Number {
-            value,
-            half_digit,
-            from_code,
-        })
+        Self::Number(Number { value, half_digit, from_code })
     }
 }
 
@@ -125,15 +117,10 @@ impl Node {
         let entry = |key: &str, value: Value| TableEntry {
             key: key.to_owned(),
             key_span: span.clone(),
-            node: Self {
-                value,
-                span: span.clone(),
-            },
+            node: Self { value, span: span.clone() },
         };
         if !self.is_table() {
-            let law = self
-                .text()
-                .map(|law| entry("law", Value::Text(law.to_owned())));
+            let law = self.text().map(|law| entry("law", Value::Text(law.to_owned())));
             self.value = Value::Table(law.into_iter().collect());
         }
         let Value::Table(entries) = &mut self.value else {
@@ -151,10 +138,7 @@ impl Node {
 /// Parses a text; every slip of the pen is one problem.
 pub(crate) fn parse(text: &str) -> Result<Node, Vec<FileProblem>> {
     let (table, errors) = DeTable::parse_recoverable(text);
-    let root = Node {
-        value: Value::Table(entries(table.get_ref())),
-        span: table.span(),
-    };
+    let root = Node { value: Value::Table(entries(table.get_ref())), span: table.span() };
     match errors.is_empty() {
         true => Ok(root),
         false => Err(problems(&errors, text)),
@@ -186,10 +170,7 @@ fn node(value: &Spanned<DeValue<'_>>) -> Node {
         DeValue::Table(table) => Value::Table(entries(table)),
         DeValue::Datetime(_) => Value::Date,
     };
-    Node {
-        value: converted,
-        span: value.span(),
-    }
+    Node { value: converted, span: value.span() }
 }
 
 /// A float as written; what is not a finite decimal becomes NaN or an
@@ -204,9 +185,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, IoError> {
     /// Larger files are a mistake.
     const MOST_BYTES: u64 = 16 << 20;
     if path.is_dir() {
-        return Err(IoError::other(
-            "it is a folder; expected an experiment file",
-        ));
+        return Err(IoError::other("it is a folder; expected an experiment file"));
     }
     let mut bytes = Vec::new();
     // One byte more shows a file that is too large; an endless one ends.
@@ -259,12 +238,7 @@ fn place(error: &Error, text: &str) -> Range<usize> {
     let end = text.trim_end().len();
     match error.span() {
         Some(span) if span.start < end => span.start..span.end.min(text.len()),
-        _ => {
-            text.trim_end()
-                .char_indices()
-                .last()
-                .map_or(0, |(at, _)| at)..end
-        }
+        _ => text.trim_end().char_indices().last().map_or(0, |(at, _)| at)..end,
     }
 }
 
@@ -304,10 +278,7 @@ impl Reported {
 
 /// The line around a byte, without its end.
 fn line(text: &str, at: usize) -> Range<usize> {
-    let at = (0..=at.min(text.len()))
-        .rev()
-        .find(|at| text.is_char_boundary(*at))
-        .unwrap_or(0);
+    let at = (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
     let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
     start..at + text[at..].find('\n').unwrap_or(text.len() - at)
 }
@@ -333,10 +304,7 @@ fn problem(error: &Error, place: &Range<usize>, text: &str) -> FileProblem {
     }
     // The value in the line, without a comment.
     let value_at = here.start + text[here.clone()].find('=').map_or(here.len(), |at| at + 1);
-    let raw = text[value_at..here.end]
-        .split('#')
-        .next()
-        .unwrap_or_default();
+    let raw = text[value_at..here.end].split('#').next().unwrap_or_default();
     if let Some(label) = unquoted(raw.trim()) {
         let start = value_at + (raw.len() - raw.trim_start().len());
         let place = start..start + raw.trim().len();
@@ -405,9 +373,9 @@ fn unquoted(raw: &str) -> Option<String> {
                 Some(format!("expected a decimal point: write {better}"))
             }
             Some(better) => Some(format!("expected a decimal point: write \"{better}\"")),
-            None if raw.starts_with(|c: char| c.is_ascii_digit()) => Some(format!(
-                "expected a number, or a quantity in quotes; {error}"
-            )),
+            None if raw.starts_with(|c: char| c.is_ascii_digit()) => {
+                Some(format!("expected a number, or a quantity in quotes; {error}"))
+            }
             None if raw.starts_with(char::is_alphabetic) && raw.chars().all(word) => {
                 Some(format!("expected quotes around a text: \"{raw}\""))
             }

@@ -54,10 +54,8 @@ impl Experiment {
     /// An unreadable file, or every mistake found in it.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
         let path = path.as_ref();
-        let text = document::read_text(path).map_err(|error| OpenError::Unreadable {
-            path: path.display().to_string(),
-            error,
-        })?;
+        let text = document::read_text(path)
+            .map_err(|error| OpenError::Unreadable { path: path.display().to_string(), error })?;
         Ok(Self::from_text(&path.display().to_string(), &text)?)
     }
 
@@ -93,24 +91,10 @@ impl Experiment {
         };
         check(&tree, units).map_err(|problems| Mistakes::new(problems, &source))?;
         let (node, fields) = (&tree, &ROOT);
-        let written = Spec::read(
-            &View {
-                node,
-                fields,
-                units,
-            },
-            &folder,
-        )
-        .map_err(refused)?;
+        let written = Spec::read(&View { node, fields, units }, &folder).map_err(refused)?;
         let reading = *reading.unwrap_or(&written.reading);
         let spec = written.clone();
-        let experiment = Self {
-            source,
-            folder,
-            tree,
-            written,
-            spec,
-        };
+        let experiment = Self { source, folder, tree, written, spec };
         experiment.with_reading(&reading)
     }
 
@@ -121,10 +105,7 @@ impl Experiment {
     pub fn with_reading(&self, reading: &Reading) -> Result<Self, Mistakes> {
         let spec = reading.apply(&self.written);
         spec.check_layout().map_err(|p| self.mistake(p))?;
-        let experiment = Self {
-            spec,
-            ..self.clone()
-        };
+        let experiment = Self { spec, ..self.clone() };
         experiment.chain(None)?;
         Ok(experiment)
     }
@@ -337,23 +318,14 @@ impl Experiment {
         // The case's own in the places of the file's, so that paths lead to them and setting a
         // number keeps them.
         let mut tree = self.tree.clone();
-        let all = self
-            .tree
-            .get("campaign")
-            .map_or(&[][..], |table| table.list("cases"));
-        let own = all
-            .iter()
-            .find(|case| case.get("name").and_then(Node::text) == Some(name));
+        let all = self.tree.get("campaign").map_or(&[][..], |table| table.list("cases"));
+        let own = all.iter().find(|case| case.get("name").and_then(Node::text) == Some(name));
         for key in ["contacts", "liquid"] {
             if let Some(node) = own.and_then(|case| case.get(key)) {
                 *tree.entry_mut(key) = node.clone();
             }
         }
-        let chosen = Self {
-            written,
-            tree,
-            ..self.clone()
-        };
+        let chosen = Self { written, tree, ..self.clone() };
         Some(chosen.with_reading(&self.spec.reading))
     }
 
@@ -390,15 +362,7 @@ impl Experiment {
     /// bits. For fingerprints: not for reading.
     pub fn canonical_text(&self) -> String {
         let mut text = format!("{:?}\n", self.reading());
-        for SectionSpec {
-            from,
-            to,
-            wet,
-            material,
-            laws,
-            ..
-        } in self.sections()
-        {
+        for SectionSpec { from, to, wet, material, laws, .. } in self.sections() {
             text += &format!("{from} {to:?} {wet} {material:?}");
             for law in laws {
                 let given = law.given.iter();
@@ -423,9 +387,7 @@ fn append_canonical(value: &Value, text: &mut String) {
         Value::Date => writeln!(text, "a date or time"),
         Value::List(items) => {
             text.push_str("[\n");
-            items
-                .iter()
-                .for_each(|item| append_canonical(&item.value, text));
+            items.iter().for_each(|item| append_canonical(&item.value, text));
             writeln!(text, "]")
         }
         Value::Table(entries) => {
@@ -452,8 +414,7 @@ impl Preset {
     /// The file's title.
     pub fn title(&self) -> &'static str {
         let line = self.text.lines().find(|line| line.starts_with("title"));
-        line.and_then(|line| line.split('"').nth(1))
-            .unwrap_or(self.name)
+        line.and_then(|line| line.split('"').nth(1)).unwrap_or(self.name)
     }
 }
 
@@ -482,14 +443,7 @@ macro_rules! files {
     };
 }
 
-static PRESETS: &[Preset] = files![
-    "dry",
-    "hertz",
-    "hertz-viscoelastic",
-    "pump",
-    "gear",
-    "motor"
-];
+static PRESETS: &[Preset] = files!["dry", "hertz", "hertz-viscoelastic", "pump", "gear", "motor"];
 
 static EXAMPLES: &[Preset] = files![
     "dimer-steel-ptfe",

@@ -121,12 +121,7 @@ impl ValueLimits {
     const NOT_NEGATIVE: Self = Self::closed(0.0, f64::MAX, "0 or more");
 
     const fn open(least: f64, most: f64, closed: bool, words: &'static str) -> Self {
-        Self {
-            least,
-            most,
-            closed,
-            words,
-        }
+        Self { least, most, closed, words }
     }
 
     /// Both ends included.
@@ -187,15 +182,10 @@ const ACCURACY: ValueLimits = ValueLimits::closed(1e-13, 1e-2, "between 1e-13 an
 const INCLINE: ValueLimits = ValueLimits::closed(0.0, FRAC_PI_2, "between 0 and 90 deg");
 const FRICTION: ValueLimits = ValueLimits::closed(0.0, 10.0, "from 0 to 10");
 const RATIO: ValueLimits = ValueLimits::open(0.0, 100.0, false, "positive and below 100");
-const DISPLACEMENT: Kind = Quantity(
-    "m",
-    ValueLimits::closed(-1e6, 1e6, "from -1000 km to 1000 km"),
-);
+const DISPLACEMENT: Kind =
+    Quantity("m", ValueLimits::closed(-1e6, 1e6, "from -1000 km to 1000 km"));
 /// Up to the Earth's mantle and beyond.
-const VISCOSITY: Kind = Scaled(
-    "Pa s",
-    ValueLimits::closed(0.0, 1e24, "from 0 to 1e24 Pa s"),
-);
+const VISCOSITY: Kind = Scaled("Pa s", ValueLimits::closed(0.0, 1e24, "from 0 to 1e24 Pa s"));
 /// Of radii over their mean.
 pub(crate) const SPREAD: Kind = Quantity("1", ValueLimits::closed(0.0, 0.1, "from 0 to 0.1"));
 pub(crate) const VOLTAGE: Kind = Quantity("V", ValueLimits::ANY);
@@ -460,10 +450,7 @@ static CASE: Fields = table! { "[[campaign.cases]]";
     liquid: Table(&Liquid::FIELDS), "liquid in place of the file's own, for reports";
 };
 
-const SEED: Kind = Count {
-    least: 0,
-    most: 1 << 52,
-};
+const SEED: Kind = Count { least: 0, most: 1 << 52 };
 
 static CAMPAIGN: Fields = table! { "[campaign]";
     seed: SEED, "seed of all that is random; default 1";
@@ -512,9 +499,7 @@ pub(crate) fn home(key: &str) -> Option<String> {
             Table(fields) | Tables(fields) | Named(fields) => vec![(fields.title, fields)],
             OneOf(variants) => {
                 let options = variants.options.iter();
-                options
-                    .map(|(_, fields)| (variants.title, fields))
-                    .collect()
+                options.map(|(_, fields)| (variants.title, fields)).collect()
             }
             _ => Vec::new(),
         }
@@ -536,10 +521,7 @@ const SYNONYMS: &[(&str, &str)] = &[
     ("speed v v0", "velocity"),
     ("position offset x", "displacement"),
     ("n number length num beads", "count"),
-    (
-        "e y young youngs_modulus modulus elastic_modulus",
-        "young_modulus",
-    ),
+    ("e y young youngs_modulus modulus elastic_modulus", "young_modulus"),
     ("nu ν poisson poissons_ratio", "poisson_ratio"),
     ("viscosity eta η", "shear_viscosity"),
     ("rho ρ", "density"),

@@ -82,19 +82,8 @@ impl Experiment {
     pub fn numbers(&self) -> Vec<Named> {
         let given = |slot: Slot<'_>| {
             let Si { value, half_digit } = slot.value(self.units())?;
-            let Slot {
-                path,
-                unit,
-                is_count,
-                ..
-            } = slot;
-            Some(Named {
-                path,
-                value,
-                unit,
-                half_digit,
-                is_count,
-            })
+            let Slot { path, unit, is_count, .. } = slot;
+            Some(Named { path, value, unit, half_digit, is_count })
         };
         self.slots().into_iter().filter_map(given).collect()
     }
@@ -135,9 +124,7 @@ impl Experiment {
         let slots = self.slots();
         let slot = find(&slots, path)?;
         let value = slot.value(self.units()).map(|si| si.value);
-        value.ok_or_else(|| PathError::NotGiven {
-            path: slot.path.clone(),
-        })
+        value.ok_or_else(|| PathError::NotGiven { path: slot.path.clone() })
     }
 
     /// This experiment with named numbers set, in SI.
@@ -202,10 +189,7 @@ impl Experiment {
         near_end.entry_mut("push").value = Value::Text("constant".to_owned());
         near_end.entry_mut("force").value = Value::from_code(force_n, 0.0);
         let preload = PreloadReading::None;
-        let own = Reading {
-            preload,
-            ..self.reading()
-        };
+        let own = Reading { preload, ..self.reading() };
         Ok(self.with_tree(tree)?.with_reading(&own)?)
     }
 
@@ -224,11 +208,7 @@ impl Experiment {
         let corner = corner_hz.map(|corner_hz| Value::from_code(corner_hz, 0.0));
         let mut tree = self.tree().clone();
         let amplifier = tree.entry_mut("campaign").entry_mut("amplifier");
-        let values = [
-            ("low_pass", corner),
-            ("order", text(order)),
-            ("kind", text(kind)),
-        ];
+        let values = [("low_pass", corner), ("order", text(order)), ("kind", text(kind))];
         for (key, value) in values {
             if let Some(value) = value {
                 amplifier.entry_mut(key).value = value;
@@ -239,10 +219,7 @@ impl Experiment {
 
     fn slots(&self) -> Vec<Slot<'_>> {
         let units = self.units();
-        let mut walk = SlotWalk {
-            units,
-            slots: Vec::new(),
-        };
+        let mut walk = SlotWalk { units, slots: Vec::new() };
         walk.table(Some(self.tree()), &ROOT, &SlotPath::default());
         walk.slots
     }
@@ -297,17 +274,12 @@ fn find<'a, 'b>(slots: &'b [Slot<'a>], path: &str) -> Result<&'b Slot<'a>, PathE
     }
     let ending = format!(".{path}");
     let fitting: Vec<_> = slots.iter().filter(|s| s.path.ends_with(&ending)).collect();
-    let given: Vec<_> = fitting
-        .iter()
-        .filter(|s| s.node.is_some())
-        .copied()
-        .collect();
+    let given: Vec<_> = fitting.iter().filter(|s| s.node.is_some()).copied().collect();
     match (&given[..], &fitting[..]) {
         ([only], _) | ([], [only]) => Ok(only),
-        ([], []) => Err(PathError::Unknown {
-            path: path.to_owned(),
-            nearest: nearest_path(path, slots),
-        }),
+        ([], []) => {
+            Err(PathError::Unknown { path: path.to_owned(), nearest: nearest_path(path, slots) })
+        }
         ([], several) | (several, _) => Err(PathError::Ambiguous {
             path: path.to_owned(),
             candidates: several.iter().map(|slot| slot.path.clone()).collect(),

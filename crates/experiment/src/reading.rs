@@ -216,10 +216,7 @@ impl Reading {
 
     /// The experiment as written, in this reading.
     pub(crate) fn apply(&self, written: &Spec) -> Spec {
-        let mut spec = Spec {
-            reading: *self,
-            ..written.clone()
-        };
+        let mut spec = Spec { reading: *self, ..written.clone() };
         self.apply_to_bodies(&mut spec);
         self.apply_to_ends(&mut spec);
         self.apply_to_sections(&mut spec);
@@ -247,12 +244,7 @@ impl Reading {
         let stiffness_n_m = SPRING_STIFFNESS_N_M;
         match self.preload {
             PreloadReading::None => {}
-            PreloadReading::Spring => {
-                spec.push = Push::Spring {
-                    force_n,
-                    stiffness_n_m,
-                }
-            }
+            PreloadReading::Spring => spec.push = Push::Spring { force_n, stiffness_n_m },
             PreloadReading::Constant => spec.push = Push::Constant { force_n },
         }
         match self.incline {
@@ -263,10 +255,7 @@ impl Reading {
         if self.tension == TensionReading::Clipped {
             spec.tension = Tension::Clipped;
         }
-        if let Far::Wall {
-            is_plane, stop_kg, ..
-        } = &mut spec.far
-        {
+        if let Far::Wall { is_plane, stop_kg, .. } = &mut spec.far {
             *is_plane |= self.wall_shape == WallShapeReading::Plane;
             if self.stop == StopReading::Heavy {
                 *stop_kg = Some(STOP_MASS_KG);
@@ -286,11 +275,7 @@ impl Reading {
             && let Some(section) = spec.sections.iter().find(|section| section.wet)
         {
             let (from, to) = (0, None);
-            spec.sections = vec![SectionSpec {
-                from,
-                to,
-                ..section.clone()
-            }];
+            spec.sections = vec![SectionSpec { from, to, ..section.clone() }];
         }
         if let (WallLiquidReading::Dry, Some(dry)) = (self.wall_liquid, dry) {
             dry_wall(spec, dry);
@@ -306,10 +291,7 @@ impl Reading {
             if without && !section.wet {
                 section.laws.retain(|law| !is_cubic(law.name()));
             }
-            let gated = section
-                .laws
-                .iter_mut()
-                .filter(|law| law.name() == "damping_cubic");
+            let gated = section.laws.iter_mut().filter(|law| law.name() == "damping_cubic");
             if let (CubicGateReading::Always, Some(row)) = (self.cubic_gate, ungated) {
                 gated.for_each(|law| law.row = row);
             }
@@ -342,24 +324,15 @@ fn dry_wall(spec: &mut Spec, dry: SectionSpec) {
     } else {
         last.to = Some(contact - 1);
     }
-    spec.sections.push(SectionSpec {
-        from: contact,
-        to: None,
-        ..dry
-    });
+    spec.sections.push(SectionSpec { from: contact, to: None, ..dry });
 }
 
 impl std::fmt::Display for Reading {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let changes = self.changes().into_iter();
-        let texts: Vec<String> = changes
-            .map(|(name, option)| format!("{name} = {option}"))
-            .collect();
-        f.write_str(if texts.is_empty() {
-            "default reading"
-        } else {
-            ""
-        })?;
+        let texts: Vec<String> =
+            changes.map(|(name, option)| format!("{name} = {option}")).collect();
+        f.write_str(if texts.is_empty() { "default reading" } else { "" })?;
         f.write_str(&texts.join(", "))
     }
 }

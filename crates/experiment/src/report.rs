@@ -66,11 +66,7 @@ impl FileProblem {
     }
 
     fn at(self, severity: Severity, source: &Source) -> Finding {
-        Finding {
-            severity,
-            problem: self,
-            source: source.clone(),
-        }
+        Finding { severity, problem: self, source: source.clone() }
     }
 
     pub(crate) fn warning(self, source: &Source) -> Finding {
@@ -122,13 +118,7 @@ impl Finding {
 
     /// File, line, message, expectation and advice in one line, for logs.
     pub fn one_line(&self) -> String {
-        let FileProblem {
-            message,
-            label,
-            help,
-            other,
-            ..
-        } = &self.problem;
+        let FileProblem { message, label, help, other, .. } = &self.problem;
         let mut text = format!("{}:{}: {message}: {label}", self.file(), self.line());
         if let Some((span, label)) = other.as_deref() {
             text += &format!("; line {}: {label}", self.line_of(span));
@@ -163,9 +153,7 @@ impl Diagnostic for Finding {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let FileProblem {
-            label, span, other, ..
-        } = &self.problem;
+        let FileProblem { label, span, other, .. } = &self.problem;
         let here = LabeledSpan::new_primary_with_span(Some(label.clone()), span.clone());
         let other = other.as_deref().into_iter();
         let other = other
@@ -212,8 +200,7 @@ pub(crate) fn nearest_word<'a>(
     let words = words.into_iter().filter(|_| length <= 64);
     let near = words.map(|word| (distance(word), word));
     let near = near.filter(|(distance, _)| *distance <= length.div_ceil(3).max(1));
-    near.min_by_key(|(distance, _)| *distance)
-        .map(|(_, word)| word)
+    near.min_by_key(|(distance, _)| *distance).map(|(_, word)| word)
 }
 
 /// A computed number for messages, to this many digits.

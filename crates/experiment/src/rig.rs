@@ -193,16 +193,12 @@ impl Amplifier {
     /// Factors of the low-pass, whose product falls to 1/√2 at the corner.
     pub const fn factors(&self) -> &'static [LowPassFactor] {
         // Damping 2 cos(π/8) and 2 cos(3π/8).
-        const BUTTERWORTH_4: &[LowPassFactor] = &[
-            two(1.0, 1.847_759_065_022_573_5),
-            two(1.0, 0.765_366_864_730_179_7),
-        ];
+        const BUTTERWORTH_4: &[LowPassFactor] =
+            &[two(1.0, 1.847_759_065_022_573_5), two(1.0, 0.765_366_864_730_179_7)];
         // Roots of the reverse Bessel polynomials, over the frequency of half power.
         const BESSEL_2: &[LowPassFactor] = &[two(1.272_019_649_514_068_8, 1.732_050_807_568_877_4)];
-        const BESSEL_3: &[LowPassFactor] = &[
-            one(1.322_675_799_910_444_4),
-            two(1.447_617_133_146_987_4, 1.447_080_359_890_413_2),
-        ];
+        const BESSEL_3: &[LowPassFactor] =
+            &[one(1.322_675_799_910_444_4), two(1.447_617_133_146_987_4, 1.447_080_359_890_413_2)];
         const BESSEL_4: &[LowPassFactor] = &[
             two(1.430_171_559_993_991, 1.915_948_923_718_216),
             two(1.603_357_516_216_973, 1.241_405_930_098_995_7),
@@ -466,9 +462,7 @@ impl Rig {
             let read = || {
                 Ok(RigPart {
                     kind,
-                    name: own
-                        .text("name")
-                        .map_or(kind.key().replace('_', " "), str::to_owned),
+                    name: own.text("name").map_or(kind.key().replace('_', " "), str::to_owned),
                     mass_kg: own.quantity("mass")?,
                     length_m: own.quantity("length")?,
                     force_n: own.quantity("force")?,

@@ -29,9 +29,8 @@ pub fn schema() -> Value {
 
 /// A table; `tag` is a deciding key and its value.
 fn table(fields: &Fields, tag: Option<(&str, &str)>, units: Units) -> Value {
-    let mut properties: Map<String, Value> = (fields.keys.iter())
-        .map(|key| (key.name.to_owned(), property(key, units)))
-        .collect();
+    let mut properties: Map<String, Value> =
+        (fields.keys.iter()).map(|key| (key.name.to_owned(), property(key, units))).collect();
     let always = fields.keys.iter().filter(|key| key.need == Need::Always);
     let mut required: Vec<&str> = always.map(|key| key.name).collect();
     if let Some((key, value)) = tag {
@@ -56,10 +55,7 @@ fn property(key: &Key, units: Units) -> Value {
         _ => String::new(),
     };
     if let Some(object) = schema.as_object_mut() {
-        object.insert(
-            "description".to_owned(),
-            json!(format!("{}{unit}", key.about)),
-        );
+        object.insert("description".to_owned(), json!(format!("{}{unit}", key.about)));
     }
     schema
 }
@@ -154,9 +150,7 @@ fn law(units: Units) -> Value {
     let bare = LAWS.iter().filter(|row| !required(row));
     let names: Vec<&str> = bare.map(|row| row.info.name).collect();
     let tables = LAWS.iter().map(|row| law_table(row, units));
-    let options: Vec<Value> = std::iter::once(json!({ "enum": names }))
-        .chain(tables)
-        .collect();
+    let options: Vec<Value> = std::iter::once(json!({ "enum": names })).chain(tables).collect();
     json!({ "oneOf": options })
 }
 
@@ -184,9 +178,7 @@ fn law_table(row: &Row, units: Units) -> Value {
         properties.insert(CONTACT.to_owned(), schema);
     }
     let needed = row.info.parameters.iter().filter(|p| is_required(p));
-    let required: Vec<&str> = std::iter::once("law")
-        .chain(needed.map(|p| p.name))
-        .collect();
+    let required: Vec<&str> = std::iter::once("law").chain(needed.map(|p| p.name)).collect();
     json!({
         "type": "object",
         "description": row.info.equation,

@@ -199,9 +199,9 @@ impl Near {
                 shape: BodyShape::read(&table, materials)?,
                 motion: motion(tag, &table, folder)?,
             }),
-            (None, None) if root.has("initial") => Ok(Self::Free {
-                span: root.tables("initial").first().map_or(0..0, View::span),
-            }),
+            (None, None) if root.has("initial") => {
+                Ok(Self::Free { span: root.tables("initial").first().map_or(0..0, View::span) })
+            }
             (None, None) => {
                 let label = "expected [striker], [driven] or [[initial]]";
                 Err(root.problem("beads", "nothing sets the chain in motion", label))
@@ -242,14 +242,8 @@ fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, FileProb
         return Err(table.problem("amplitude", message, "expected a length, such as \"1 um\""));
     }
     let motion = match tag {
-        "sine" => Motion::Sine {
-            amplitude_m,
-            frequency_hz: table.needed("frequency")?,
-        },
-        "pulse" => Motion::Pulse {
-            amplitude_m,
-            duration_s: table.needed("duration")?,
-        },
+        "sine" => Motion::Sine { amplitude_m, frequency_hz: table.needed("frequency")? },
+        "pulse" => Motion::Pulse { amplitude_m, duration_s: table.needed("duration")? },
         _ => motion_table(table, folder)?,
     };
     let speed_m_s = motion.largest_speed_m_s();
@@ -259,16 +253,9 @@ fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, FileProb
     }
     let speed = table.units.with_unit(&brief(speed_m_s), "m/s");
     let keys = ["frequency", "duration", "times", "file"];
-    let key = keys
-        .into_iter()
-        .find(|key| table.has(key))
-        .unwrap_or("motion");
+    let key = keys.into_iter().find(|key| table.has(key)).unwrap_or("motion");
     let message = format!("this motion reaches a speed of {speed}");
-    Err(table.problem(
-        key,
-        message,
-        format!("expected a largest speed {}", limits.words),
-    ))
+    Err(table.problem(key, message, format!("expected a largest speed {}", limits.words)))
 }
 
 /// Measured motion: points in the experiment file, or in a CSV file beside it.
@@ -300,10 +287,7 @@ fn motion_table(table: &View<'_>, folder: &Path) -> Result<Motion, FileProblem> 
         let message = "this motion sets nothing in motion";
         (message, "expected positions that differ")
     } else {
-        return Ok(Motion::Table {
-            times_s,
-            positions_m,
-        });
+        return Ok(Motion::Table { times_s, positions_m });
     };
     Err(table.problem(key, message, label))
 }
@@ -332,15 +316,10 @@ fn motion_file(table: &View<'_>, path: &Path) -> Result<(Vec<f64>, Vec<f64>), Fi
     }
     let number = |text: &str| text.trim().parse().ok().filter(|v: &f64| v.is_finite());
     let pair = |(line, at): (&str, u64)| {
-        let pair = line
-            .split_once(',')
-            .and_then(|(time, at)| Some((number(time)?, number(at)?)));
+        let pair = line.split_once(',').and_then(|(time, at)| Some((number(time)?, number(at)?)));
         pair.ok_or_else(|| wrong(format!(":{at}: `{line}` is not two numbers")))
     };
-    lines
-        .filter(|(line, _)| !line.is_empty())
-        .map(pair)
-        .collect()
+    lines.filter(|(line, _)| !line.is_empty()).map(pair).collect()
 }
 
 /// The push on bead 1.
@@ -350,10 +329,7 @@ pub(crate) fn push(root: &View<'_>) -> Result<Push, FileProblem> {
     };
     let force_n = table.needed("force")?;
     Ok(match tag {
-        "spring" => Push::Spring {
-            force_n,
-            stiffness_n_m: table.needed("stiffness")?,
-        },
+        "spring" => Push::Spring { force_n, stiffness_n_m: table.needed("stiffness")? },
         _ => Push::Constant { force_n },
     })
 }
@@ -378,16 +354,10 @@ impl Far {
     pub(crate) fn read(root: &View<'_>, materials: &Materials) -> Result<Self, FileProblem> {
         let Some((tag, table)) = root.variant("far_end") else {
             let shape = BodyShape::default();
-            return Ok(Self::Wall {
-                is_plane: false,
-                shape,
-                stop_kg: None,
-            });
+            return Ok(Self::Wall { is_plane: false, shape, stop_kg: None });
         };
         Ok(match tag {
-            "periodic" => Self::Periodic {
-                force_n: table.quantity("force")?.unwrap_or(0.0),
-            },
+            "periodic" => Self::Periodic { force_n: table.quantity("force")?.unwrap_or(0.0) },
             "free" => Self::Free,
             _ => Self::Wall {
                 is_plane: tag.starts_with("plane"),

@@ -142,11 +142,7 @@ impl Spec {
         let beads = self.bead_count();
         if beads == 0 {
             let message = "the chain has no beads";
-            return Err(FileProblem::new(
-                &self.beads_span(),
-                message,
-                "expected at least one",
-            ));
+            return Err(FileProblem::new(&self.beads_span(), message, "expected at least one"));
         }
         // Bodies that move: the beads, body 0 if there is one, and a stop of finite mass.
         let first = usize::from(matches!(self.near, Near::Free { .. }));
@@ -166,11 +162,7 @@ impl Spec {
         }
         if let (Some(span), false) = (&sensors.channel, self.has_wall()) {
             let message = "the channel adds the wall's signal, but there is no wall";
-            return Err(FileProblem::new(
-                span,
-                message,
-                "expected a [far_end] to lean on",
-            ));
+            return Err(FileProblem::new(span, message, "expected a [far_end] to lean on"));
         }
         for (gap, span) in &self.gaps {
             self.inside("contact", gap.contact, &contacts, span)?;
@@ -178,14 +170,8 @@ impl Spec {
         for (initial, span) in &self.initial {
             self.inside("bead", initial.bead, &(1..=beads), span)?;
         }
-        repeated(
-            "contact",
-            self.gaps.iter().map(|(gap, span)| (gap.contact, span)),
-        )?;
-        repeated(
-            "bead",
-            self.initial.iter().map(|(state, span)| (state.bead, span)),
-        )?;
+        repeated("contact", self.gaps.iter().map(|(gap, span)| (gap.contact, span)))?;
+        repeated("bead", self.initial.iter().map(|(state, span)| (state.bead, span)))?;
         self.check_motion()
     }
 
@@ -203,11 +189,7 @@ impl Spec {
         let message = format!("{what} {found} is outside the chain of {beads} beads");
         let label = match there.is_empty() {
             true => "expected nothing: this chain has none".to_owned(),
-            false => format!(
-                "expected a number from {} to {}",
-                there.start(),
-                there.end()
-            ),
+            false => format!("expected a number from {} to {}", there.start(), there.end()),
         };
         let problem = FileProblem::new(span, message, label);
         Err(match (what, found) {
@@ -226,11 +208,7 @@ impl Spec {
             && self.initial.iter().all(|(initial, _)| still(initial))
         {
             let label = "all [[initial]] are 0: expected a bead that moves or is displaced";
-            return Err(FileProblem::new(
-                span,
-                "nothing sets the chain in motion",
-                label,
-            ));
+            return Err(FileProblem::new(span, "nothing sets the chain in motion", label));
         }
         let pushed = !matches!(self.push, Push::None);
         if matches!(self.far, Far::Periodic { .. }) && (pushed || !is_free) {
@@ -246,11 +224,7 @@ impl Spec {
         match error {
             ChainError::Law { contact, error } => self.law_problem(*contact, error),
             ChainError::Equilibrium(why) => self.equilibrium_problem(why),
-            ChainError::Value {
-                what,
-                value,
-                expected,
-            } => {
+            ChainError::Value { what, value, expected } => {
                 let label = format!("expected it to be {expected}");
                 FileProblem::new(&self.beads_span(), format!("{what} is {value}"), label)
             }

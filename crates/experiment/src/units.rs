@@ -150,12 +150,7 @@ pub struct Unit {
 
 impl Unit {
     /// The unit of plain numbers.
-    pub(crate) const ONE: Self = Self {
-        dimension: Dimension::NONE,
-        tens: 0.0,
-        up: 1.0,
-        down: 1.0,
-    };
+    pub(crate) const ONE: Self = Self { dimension: Dimension::NONE, tens: 0.0, up: 1.0, down: 1.0 };
 
     /// A decimal number of this unit in SI base units.
     fn convert(&self, number: &Decimal) -> f64 {
@@ -277,11 +272,7 @@ impl Decimal {
                 let size: Option<i64> = figures.parse().ok().filter(|p| *p <= 1_000_000);
                 let too_large = "the power of ten is too large";
                 power = size.ok_or_else(|| UnitError::new(too_large, end..end + length))?;
-                power *= if bytes.get(end + 1) == Some(&b'-') {
-                    -1
-                } else {
-                    1
-                };
+                power *= if bytes.get(end + 1) == Some(&b'-') { -1 } else { 1 };
                 end += length;
             }
         }
@@ -295,11 +286,7 @@ impl Decimal {
 
     /// Half a unit of the last digit: 0.005 for 6.35.
     fn half_digit(&self) -> Self {
-        Self {
-            negative: false,
-            digits: "5".to_owned(),
-            exponent: self.exponent - 1,
-        }
+        Self { negative: false, digits: "5".to_owned(), exponent: self.exponent - 1 }
     }
 
     /// This number · factor · 10^tens, rounded once where the digits and the factor are whole
@@ -404,9 +391,7 @@ impl<'a> UnitReader<'a> {
 
     fn take_while(&self, belongs: impl Fn(char) -> bool) -> &'a str {
         let end = self.rest().find(|c| !belongs(c));
-        self.rest()
-            .get(..end.unwrap_or(self.rest().len()))
-            .unwrap_or_default()
+        self.rest().get(..end.unwrap_or(self.rest().len())).unwrap_or_default()
     }
 
     /// An error at the next character.
@@ -497,9 +482,7 @@ impl<'a> UnitReader<'a> {
         const RAISED: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
         let raised = self.take_while(|c| c == '⁻' || RAISED.contains(c));
         let digit = |c| RAISED.chars().position(|d| d == c);
-        let plain = raised
-            .chars()
-            .map(|c| digit(c).map_or("-".to_owned(), |d| d.to_string()));
+        let plain = raised.chars().map(|c| digit(c).map_or("-".to_owned(), |d| d.to_string()));
         if let Some(power) = exponent_of(&plain.collect::<String>()) {
             self.at += raised.len();
             return Ok(Some(power));
@@ -551,20 +534,11 @@ struct Symbol {
 
 /// A symbol whose size is a power of ten, and which may have a prefix.
 const fn si(text: &'static str, tens: i8, powers: [i8; 5]) -> Symbol {
-    Symbol {
-        prefixable: true,
-        ..other(text, 1.0, tens, powers)
-    }
+    Symbol { prefixable: true, ..other(text, 1.0, tens, powers) }
 }
 
 const fn other(text: &'static str, factor: f64, tens: i8, powers: [i8; 5]) -> Symbol {
-    Symbol {
-        text,
-        prefixable: false,
-        factor,
-        tens,
-        powers,
-    }
+    Symbol { text, prefixable: false, factor, tens, powers }
 }
 
 const LENGTH: [i8; 5] = [1, 0, 0, 0, 0];
@@ -633,9 +607,7 @@ fn nearest_symbol(text: &str) -> Option<String> {
     let prefixed = |symbol: &Symbol| {
         let prefixes = PREFIXES.iter().filter(|_| symbol.prefixable);
         let prefixed = prefixes.map(|(prefix, _)| format!("{prefix}{}", symbol.text));
-        std::iter::once(symbol.text.to_owned())
-            .chain(prefixed)
-            .collect::<Vec<_>>()
+        std::iter::once(symbol.text.to_owned()).chain(prefixed).collect::<Vec<_>>()
     };
     // Any letter is one slip away from any other: only its case may be wrong.
     let single = text.chars().count() == 1;

@@ -73,16 +73,12 @@ pub(crate) fn refusal(spec: &Spec, chain: &Chain) -> Option<FileProblem> {
 pub(crate) fn warnings(spec: &Spec, chain: &Chain) -> Vec<FileProblem> {
     let collisions = collisions(spec, chain);
     let depth = |collision: &Collision<'_>| collision.overlap_m / collision.pair.radius_m;
-    let spheres = collisions
-        .iter()
-        .filter_map(|c| Some((c, c.law_of_spheres()?)));
+    let spheres = collisions.iter().filter_map(|c| Some((c, c.law_of_spheres()?)));
     let deepest = spheres.max_by(|a, b| depth(a.0).total_cmp(&depth(b.0)));
     let deep = deepest.filter(|(c, _)| spec.units == Units::Si && depth(c) > DEEP);
     let deep = deep.map(|(collision, law)| collision.too_deep(law));
     let damping = collisions.iter().flat_map(Collision::damping);
-    deep.into_iter()
-        .chain(damping.filter_map(|damping| damping.warning()))
-        .collect()
+    deep.into_iter().chain(damping.filter_map(|damping| damping.warning())).collect()
 }
 
 /// The collisions of all sections that have a law that pushes back; none where
@@ -96,33 +92,17 @@ fn collisions<'a>(spec: &'a Spec, chain: &Chain) -> Vec<Collision<'a>> {
             // A law that can't serve this pair is reported by those who set it up.
             let row = law.coefficients(&pair).ok()?;
             let columns = Columns::from_rows(&[row]);
-            Some(LawTerm {
-                law: law.clone(),
-                columns,
-            })
+            Some(LawTerm { law: law.clone(), columns })
         });
         let terms: Vec<LawTerm> = terms.collect::<Option<_>>()?;
         // No contact can hold more than what was put in.
         let own_j = 0.5 * pair.mass_kg * speed_m_s * speed_m_s;
         let overlap_m = overlap_m(&terms, own_j.min(energy_j))?;
         let section = written;
-        Some(Collision {
-            spec,
-            section,
-            contact,
-            pair,
-            speed_m_s,
-            overlap_m,
-            terms,
-        })
+        Some(Collision { spec, section, contact, pair, speed_m_s, overlap_m, terms })
     };
     match speed_m_s > 0.0 && speed_m_s.is_finite() {
-        true => spec
-            .sections
-            .iter()
-            .zip(&chain.sections)
-            .filter_map(collision)
-            .collect(),
+        true => spec.sections.iter().zip(&chain.sections).filter_map(collision).collect(),
         false => Vec::new(),
     }
 }
@@ -202,10 +182,7 @@ impl<'a> Collision<'a> {
     /// "two bodies that meet in contact 0 at 0.5 m/s".
     fn bodies(&self) -> String {
         let speed = self.spec.units.with_unit(&brief(self.speed_m_s), "m/s");
-        format!(
-            "two bodies that meet in contact {} at {speed}",
-            self.contact
-        )
+        format!("two bodies that meet in contact {} at {speed}", self.contact)
     }
 
     /// The law that takes the bodies for spheres: one whose stiffness
@@ -273,11 +250,7 @@ impl<'a> Collision<'a> {
         dissipative.map(move |(term, law)| {
             let force_n = term.force_n(self.overlap_m, self.speed_m_s);
             let strength = force_n / elastic_n;
-            Damping {
-                collision: self,
-                law,
-                strength,
-            }
+            Damping { collision: self, law, strength }
         })
     }
 }
@@ -441,10 +414,7 @@ pub(crate) fn effort_problem(spec: &Spec, chain: &Chain, system: &System) -> Opt
     let beads = chain.beads.len() as f64 + SHORT_CHAIN;
     let bead_times = |count: f64| count * (beads * scales.time_s + gaps_s);
     let swing_s = |length_m: f64| TAU * (length_m / chain.gravity_m_s2).sqrt();
-    let swing_s = chain
-        .suspension_m
-        .map(swing_s)
-        .filter(|swing_s| swing_s.is_finite());
+    let swing_s = chain.suspension_m.map(swing_s).filter(|swing_s| swing_s.is_finite());
     let given_s = spec.solver.duration_s.or(swing_s);
     let effort = ShotEffort {
         spec,
@@ -529,10 +499,7 @@ impl ShotEffort<'_> {
             return None;
         }
         let (shot, step) = (self.time(self.duration_s), self.time(step_s));
-        let message = format!(
-            "a shot of about {shot} takes {} steps of {step}",
-            brief(steps)
-        );
+        let message = format!("a shot of about {shot} takes {} steps of {step}", brief(steps));
         let least = self.time(self.duration_s / most);
         let label = format!("expected at least {least}; {}", self.good_step());
         let most = brief(most);
@@ -553,10 +520,7 @@ impl ShotEffort<'_> {
         let steps = self.duration_s / motion.longest_step_s();
         (steps > MOST_STEPS).then(|| {
             let (shot, contact) = (self.time(self.duration_s), self.time(self.contact_time_s));
-            let message = format!(
-                "following this motion for {shot} takes {} steps",
-                brief(steps)
-            );
+            let message = format!("following this motion for {shot} takes {} steps", brief(steps));
             let label = format!("expected a slower motion: contacts last {contact}");
             FileProblem::new(&shape.span, message, label).help(format!(
                 "at most {} steps are done; a shorter `duration` in [solver] makes them fewer",

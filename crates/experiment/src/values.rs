@@ -82,10 +82,7 @@ impl ExpectedQuantity<'_> {
     fn number(&self, node: &Node, number: Number) -> Result<Si, FileProblem> {
         let plain = number.from_code || self.units == Units::Dimensionless;
         match plain || self.dimension() == Dimension::NONE {
-            true => Ok(Si {
-                value: number.value,
-                half_digit: number.half_digit,
-            }),
+            true => Ok(Si { value: number.value, half_digit: number.half_digit }),
             false => Err(self.problem(node, &format!(" {HAS_NONE}"))),
         }
     }
@@ -98,10 +95,7 @@ impl ExpectedQuantity<'_> {
             Units::Dimensionless => Dimension::NONE,
         };
         let wrong = if found.dimension.agrees_with(&expected) {
-            return Ok(Si {
-                value: found.value,
-                half_digit: found.half_digit,
-            });
+            return Ok(Si { value: found.value, half_digit: found.half_digit });
         } else if found.dimension == Dimension::NONE {
             HAS_NONE.to_owned()
         } else if self.units == Units::Dimensionless {
@@ -146,11 +140,7 @@ pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i6
     };
     // Whole numbers beyond 2^53 are not distinguished by a double.
     if value.fract() != 0.0 || value.abs() > 9e15 || !value.is_finite() {
-        let wrong = if value.fract() == 0.0 {
-            "too large"
-        } else {
-            "not a whole number"
-        };
+        let wrong = if value.fract() == 0.0 { "too large" } else { "not a whole number" };
         return Err(problem(&format!("= {} is {wrong}", short(value))));
     }
     let found = value as i64;
@@ -217,12 +207,7 @@ impl<'a> View<'a> {
         node: &Node,
     ) -> Result<f64, FileProblem> {
         let units = self.units;
-        let expected = ExpectedQuantity {
-            name,
-            unit,
-            limits,
-            units,
-        };
+        let expected = ExpectedQuantity { name, unit, limits, units };
         expected.read(node).map(|si| si.value)
     }
 
@@ -300,11 +285,7 @@ impl<'a> View<'a> {
     }
 
     fn of(&self, node: &'a Node, fields: &'static Fields) -> Self {
-        Self {
-            node,
-            fields,
-            ..*self
-        }
+        Self { node, fields, ..*self }
     }
 
     pub(crate) fn table(&self, name: &str) -> Option<Self> {

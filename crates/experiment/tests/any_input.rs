@@ -1,9 +1,5 @@
 //! No input makes the reader panic.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, Reading, examples, presets};
 use proptest::prelude::*;
@@ -35,11 +31,7 @@ fn exercise(text: &str) -> Result<(), TestCaseError> {
 }
 
 fn files() -> Vec<&'static str> {
-    presets()
-        .iter()
-        .chain(examples())
-        .map(|file| file.text)
-        .collect()
+    presets().iter().chain(examples()).map(|file| file.text).collect()
 }
 
 /// Words that belong into experiment files, and some that do not.
@@ -103,9 +95,7 @@ fn value() -> impl Strategy<Value = String> {
         prop_oneof![
             list.prop_map(|members| format!("[{}]", members.join(", "))),
             table.prop_map(|entries| {
-                let entries = entries
-                    .iter()
-                    .map(|(key, value)| format!("\"{key}\" = {value}"));
+                let entries = entries.iter().map(|(key, value)| format!("\"{key}\" = {value}"));
                 format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
             }),
         ]

@@ -1,9 +1,5 @@
 //! What a file says of a rig's campaign.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::units::parse_quantity;
 use hertzchain_experiment::{Experiment, Finding, LowPass, Trigger, campaigns, preset, schema};
@@ -44,11 +40,7 @@ fn a_case_has_its_own_contacts_and_those_of_its_preset() {
             format!("{:?}", chain.sections)
         };
         let of_the_campaign = preset("paper").unwrap().case(case).unwrap().unwrap();
-        assert_eq!(
-            sections(&of_the_campaign),
-            sections(&preset(case).unwrap()),
-            "{case}"
-        );
+        assert_eq!(sections(&of_the_campaign), sections(&preset(case).unwrap()), "{case}");
         let liquid = of_the_campaign.liquid().map(|liquid| liquid.name.clone());
         let alone = preset(case).unwrap();
         assert_eq!(liquid, alone.liquid().map(|liquid| liquid.name.clone()));
@@ -61,11 +53,7 @@ fn campaigns_have_no_warnings_in_any_case() {
     for file in campaigns() {
         let experiment = preset(file.name).unwrap();
         assert_eq!(experiment.title(), file.title());
-        assert!(
-            experiment.chain(None).unwrap().1.is_empty(),
-            "{}",
-            file.name
-        );
+        assert!(experiment.chain(None).unwrap().1.is_empty(), "{}", file.name);
         for case in experiment.cases() {
             let case = experiment.case(case).unwrap().unwrap();
             assert!(case.chain(Some(0.5)).unwrap().1.is_empty());
@@ -99,10 +87,7 @@ fn speeds_are_a_list_or_a_range_but_not_both_and_not_half_a_range() {
     let half = after("fastest = \"1.23 m/s\"\n", "");
     assert!(half.one_line().contains("`fastest`"), "{half:?}");
     let negative = after(range, "speeds = [\"-0.2 m/s\"]");
-    assert!(
-        negative.to_string().contains("not positive"),
-        "{negative:?}"
-    );
+    assert!(negative.to_string().contains("not positive"), "{negative:?}");
 }
 
 #[test]

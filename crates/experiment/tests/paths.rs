@@ -1,9 +1,5 @@
 //! Named numbers: found, read, set.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_chain::{Pair, Start};
 use hertzchain_experiment::{Experiment, PathError, examples, preset, presets};
@@ -18,12 +14,7 @@ fn every_number_of_every_file_is_found_by_its_path_and_can_be_set_to_itself() {
         for number in numbers {
             assert_eq!(experiment.get(&number.path).unwrap(), number.value);
             let same = experiment.set(&[(&number.path, number.value)]).unwrap();
-            assert_eq!(
-                format!("{:?}", same.chain(None).unwrap().0),
-                before,
-                "{}",
-                number.path
-            );
+            assert_eq!(format!("{:?}", same.chain(None).unwrap().0), before, "{}", number.path);
         }
     }
 }
@@ -34,16 +25,8 @@ fn paths_are_keys_joined_by_points_and_laws_by_name() {
     for (path, value, unit) in [
         ("materials.aisi316.young_modulus", 213e9, "Pa"),
         ("materials.pump-oil.poisson_ratio.exponent", -0.274, "1"),
-        (
-            "materials.pump-oil.shear_viscosity.prefactor",
-            81405.3,
-            "Pa s",
-        ),
-        (
-            "contacts[0].laws.damping_cubic.coefficient",
-            77.0,
-            "kg s/m^2",
-        ),
+        ("materials.pump-oil.shear_viscosity.prefactor", 81405.3, "Pa s"),
+        ("contacts[0].laws.damping_cubic.coefficient", 77.0, "kg s/m^2"),
         ("striker.speed", 0.5, "m/s"),
         ("beads[0].radius", 0.00635, "m"),
         ("sensors.bead", 7.0, "1"),
@@ -64,18 +47,9 @@ fn an_end_of_a_path_is_enough_where_it_fits_one_number() {
         error.contains("materials.aisi316.young_modulus") && error.contains("pump-oil"),
         "{error}"
     );
-    let error = pump
-        .get("damping_cubic.coeficient")
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.contains("did you mean `contacts[0].laws.damping_cubic.coefficient`"),
-        "{error}"
-    );
-    assert!(matches!(
-        pump.get("track.incline"),
-        Err(PathError::NotGiven { .. })
-    ));
+    let error = pump.get("damping_cubic.coeficient").unwrap_err().to_string();
+    assert!(error.contains("did you mean `contacts[0].laws.damping_cubic.coefficient`"), "{error}");
+    assert!(matches!(pump.get("track.incline"), Err(PathError::NotGiven { .. })));
 }
 
 #[test]
@@ -114,10 +88,7 @@ fn a_place_for_a_number_is_known_before_the_file_fills_it() {
     let dry = preset("dry").unwrap();
     let stiffness = dry.place("elastic_hertz.stiffness").unwrap();
     assert_eq!(stiffness.path, "contacts[0].laws.elastic_hertz.stiffness");
-    assert_eq!(
-        (stiffness.value, stiffness.unit.as_str()),
-        (None, "N/m^(3/2)")
-    );
+    assert_eq!((stiffness.value, stiffness.unit.as_str()), (None, "N/m^(3/2)"));
     let cubic = dry.place("coefficient").unwrap();
     assert_eq!(cubic.value, Some(77.0));
     assert!(dry.places().contains(&cubic));
@@ -133,11 +104,7 @@ fn an_unfit_value_is_a_report_at_its_place_in_the_file() {
     };
     let finding = &mistakes.findings()[0];
     assert_eq!(finding.text(), "\"8.54 g\"");
-    assert!(
-        finding
-            .one_line()
-            .contains("`mass` is -1 kg, but must be positive")
-    );
+    assert!(finding.one_line().contains("`mass` is -1 kg, but must be positive"));
     assert!(dry.set(&[("beads[0].count", 39.5)]).is_err());
     assert!(dry.with_speed(0.0).is_err() && dry.with_speed(f64::NAN).is_err());
     assert_eq!(dry.with_speed(1.2).unwrap().speed_m_s(), Some(1.2));
@@ -146,14 +113,9 @@ fn an_unfit_value_is_a_report_at_its_place_in_the_file() {
 #[test]
 fn text_is_read_as_in_the_file() {
     let dry = preset("dry").unwrap();
-    let set = dry
-        .set_text(&[("radius", "5 mm"), ("poisson_ratio", "0.25")])
-        .unwrap();
+    let set = dry.set_text(&[("radius", "5 mm"), ("poisson_ratio", "0.25")]).unwrap();
     assert_eq!(
-        (
-            set.get("beads[0].radius").unwrap(),
-            set.get("poisson_ratio").unwrap()
-        ),
+        (set.get("beads[0].radius").unwrap(), set.get("poisson_ratio").unwrap()),
         (0.005, 0.25)
     );
     let error = dry.set_text(&[("radius", "5")]).unwrap_err().to_string();
@@ -203,20 +165,14 @@ fn the_number_of_a_stiffness_is_kept_in_the_unit_of_an_exponent_that_is_set_alon
     let stiffness = "contacts[1].laws.elastic_power.stiffness";
     let followers = row.followers("exponent").unwrap();
     assert_eq!(followers.len(), 1);
-    assert_eq!(
-        (followers[0].path.as_str(), followers[0].unit.as_str()),
-        (stiffness, "N/m^2")
-    );
+    assert_eq!((followers[0].path.as_str(), followers[0].unit.as_str()), (stiffness, "N/m^2"));
     assert_eq!(row.followers(stiffness).unwrap(), []);
     let set = row.set(&[("exponent", 1.9)]).unwrap();
     let written = row.set_text(&[("exponent", "1.9")]).unwrap();
     for changed in [&set, &written] {
         assert_eq!(changed.get("exponent").unwrap(), 1.9);
         let place = changed.place(stiffness).unwrap();
-        assert_eq!(
-            (place.value, place.unit.as_str()),
-            (Some(2.5e12), "N/m^1.9")
-        );
+        assert_eq!((place.value, place.unit.as_str()), (Some(2.5e12), "N/m^1.9"));
     }
     // Both at once: the text is checked against the exponent that is to be.
     let both = [("exponent", "1.9"), (stiffness, "3e12 N/m^1.9")];

@@ -1,9 +1,5 @@
 //! The files that come with the program, against the numbers they stand for.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Start};
 use hertzchain_experiment::{examples, preset, presets};
@@ -18,12 +14,7 @@ fn relative(found: f64, expected: f64) -> f64 {
 
 /// Two equal spheres in contact.
 fn pair(material: Material, radius_m: f64, mass_kg: f64) -> Pair {
-    Pair {
-        left: material,
-        right: material,
-        radius_m: radius_m / 2.0,
-        mass_kg: mass_kg / 2.0,
-    }
+    Pair { left: material, right: material, radius_m: radius_m / 2.0, mass_kg: mass_kg / 2.0 }
 }
 
 #[test]
@@ -66,14 +57,8 @@ fn losses_of_the_paper_s_dry_chains_are_those_of_their_names() {
         names.collect::<Vec<_>>()
     };
     assert_eq!(laws("hertz"), ["elastic_hertz"]);
-    assert_eq!(
-        laws("hertz-viscoelastic"),
-        ["elastic_hertz", "damping_viscoelastic"]
-    );
-    assert_eq!(
-        laws("dry"),
-        ["elastic_hertz", "damping_viscoelastic", "damping_cubic"]
-    );
+    assert_eq!(laws("hertz-viscoelastic"), ["elastic_hertz", "damping_viscoelastic"]);
+    assert_eq!(laws("dry"), ["elastic_hertz", "damping_viscoelastic", "damping_cubic"]);
 }
 
 #[test]
@@ -85,13 +70,8 @@ fn oils_follow_the_printed_power_laws_of_speed() {
     ];
     for (name, young, eta, eta_power, nu, nu_power, dynamic) in table {
         let chain = chain(name, Some(0.25));
-        let [dry, wet] = &chain.sections[..] else {
-            panic!("{name} has two sections")
-        };
-        assert_eq!(
-            (dry.contacts.clone(), wet.contacts.clone()),
-            (0..=6, 7..=40)
-        );
+        let [dry, wet] = &chain.sections[..] else { panic!("{name} has two sections") };
+        assert_eq!((dry.contacts.clone(), wet.contacts.clone()), (0..=6, 7..=40));
         assert_eq!((dry.laws.len(), wet.laws.len()), (3, 2));
         assert!(dry.material.is_none());
         let oil = wet.material.unwrap();
@@ -100,11 +80,7 @@ fn oils_follow_the_printed_power_laws_of_speed() {
         assert_eq!(oil.shear_viscosity_pa_s, eta * 0.25f64.powf(eta_power));
         assert_eq!(oil.bulk_viscosity_pa_s, oil.shear_viscosity_pa_s);
         let experiment = preset(name).unwrap();
-        let liquid = experiment
-            .liquid()
-            .unwrap()
-            .dynamic_viscosity_pa_s()
-            .unwrap();
+        let liquid = experiment.liquid().unwrap().dynamic_viscosity_pa_s().unwrap();
         // The products of the printed values, by hand, to their last digit.
         assert!(relative(liquid, dynamic) < 1e-5, "{name}: {liquid}");
     }
@@ -115,20 +91,10 @@ fn an_effective_poisson_ratio_above_one_half_is_a_warning() {
     let (_, warnings) = preset("pump").unwrap().chain(Some(0.075)).unwrap();
     assert_eq!(warnings.len(), 1);
     let line = warnings[0].one_line();
-    assert!(
-        line.contains("`pump-oil` is 0.638503 at 0.075 m/s"),
-        "{line}"
-    );
+    assert!(line.contains("`pump-oil` is 0.638503 at 0.075 m/s"), "{line}");
     assert!(warnings[0].text().contains("prefactor = 0.314"));
     // 0.314 v^-0.274 reaches 1/2 at 0.183 m/s.
-    assert!(
-        preset("pump")
-            .unwrap()
-            .chain(Some(0.184))
-            .unwrap()
-            .1
-            .is_empty()
-    );
+    assert!(preset("pump").unwrap().chain(Some(0.184)).unwrap().1.is_empty());
 }
 
 #[test]
@@ -149,19 +115,12 @@ fn dimer_repeats_its_cell_and_takes_masses_from_densities() {
 #[test]
 fn tapered_radii_are_a_geometric_series_from_the_striker_on() {
     let chain = chain("tapered", None);
-    let Start::Striker { bead, .. } = chain.start else {
-        panic!("a striker")
-    };
+    let Start::Striker { bead, .. } = chain.start else { panic!("a striker") };
     for (index, found) in chain.beads.iter().enumerate() {
         let radius = bead.radius_m * 0.95f64.powi(index as i32 + 1);
         // A power against products: a few roundings.
         assert!(relative(found.radius_m, radius) < 1e-14);
-        assert!(
-            relative(
-                found.mass_kg / bead.mass_kg,
-                (radius / bead.radius_m).powi(3)
-            ) < 1e-14
-        );
+        assert!(relative(found.mass_kg / bead.mass_kg, (radius / bead.radius_m).powi(3)) < 1e-14);
     }
 }
 
@@ -178,18 +137,12 @@ fn an_unknown_preset_names_the_nearest() {
     let error = preset("pmup").unwrap_err();
     assert_eq!(error.nearest, Some("pump"));
     let text = error.to_string();
-    assert!(
-        text.contains("hertz-viscoelastic") && text.contains("did you mean `pump`"),
-        "{text}"
-    );
+    assert!(text.contains("hertz-viscoelastic") && text.contains("did you mean `pump`"), "{text}");
 }
 
 /// Hertz stiffness of two bodies, as the laws of a contact see them.
 fn stiffness(chain: &Chain, contact: usize, left: &Bead, right: (f64, Material)) -> f64 {
-    let section = chain
-        .sections
-        .iter()
-        .find(|s| s.contacts.contains(&contact));
+    let section = chain.sections.iter().find(|s| s.contacts.contains(&contact));
     let pair = Pair {
         left: left.material,
         right: right.1,
@@ -206,24 +159,14 @@ fn examples_have_the_masses_and_stiffnesses_of_an_independent_program() {
     let same = |found: f64, expected: f64| assert!(relative(found, expected) < 4e-15, "{found}");
 
     let dimer = chain("dimer-steel-ptfe", None);
-    let [steel, ptfe, ..] = &dimer.beads[..] else {
-        panic!("two beads")
-    };
+    let [steel, ptfe, ..] = &dimer.beads[..] else { panic!("two beads") };
     same(steel.mass_kg, 0.003614094086506307);
     same(ptfe.mass_kg, 0.000983937115051342);
     same(stiffness(&dimer, 1, steel, body(ptfe)), 119414718.64581832);
 
     let intruder = chain("light-intruder", None);
-    assert_eq!(
-        (intruder.beads.len(), intruder.beads[19].mass_kg),
-        (40, 0.0010675)
-    );
-    let light = stiffness(
-        &intruder,
-        20,
-        &intruder.beads[19],
-        body(&intruder.beads[20]),
-    );
+    assert_eq!((intruder.beads.len(), intruder.beads[19].mass_kg), (40, 0.0010675));
+    let light = stiffness(&intruder, 20, &intruder.beads[19], body(&intruder.beads[20]));
     same(light, 7179152642.276926);
 
     let pressed = chain("precompressed", None);
@@ -233,33 +176,20 @@ fn examples_have_the_masses_and_stiffnesses_of_an_independent_program() {
     assert_eq!(pressed.push.force_n(), 30.0);
 
     let heavy = chain("heavy-striker", None);
-    let Start::Striker { bead, .. } = &heavy.start else {
-        panic!("a striker")
-    };
+    let Start::Striker { bead, .. } = &heavy.start else { panic!("a striker") };
     same(bead.mass_kg, 5.0 * 0.00854);
-    same(
-        stiffness(&heavy, 0, bead, body(&heavy.beads[0])),
-        9877478598.039879,
-    );
+    same(stiffness(&heavy, 0, bead, body(&heavy.beads[0])), 9877478598.039879);
 
     let vertical = chain("vertical-on-specimen", None);
     let last = vertical.beads.last().unwrap();
-    let FarEnd::Plane { material } = vertical.far else {
-        panic!("a plane")
-    };
+    let FarEnd::Plane { material } = vertical.far else { panic!("a plane") };
     same(last.mass_kg, 0.02823437411966145);
-    same(
-        stiffness(&vertical, 20, last, (f64::INFINITY, material)),
-        452179960.5782284,
-    );
+    same(stiffness(&vertical, 20, last, (f64::INFINITY, material)), 452179960.5782284);
 }
 
 #[test]
 fn a_vertical_chain_rests_under_its_own_weight() {
-    let (system, _) = preset("vertical-on-specimen")
-        .unwrap()
-        .system(None)
-        .unwrap();
+    let (system, _) = preset("vertical-on-specimen").unwrap().system(None).unwrap();
     let overlap = |contact| system.static_contact(contact).overlap_m;
     // The law is inverted by bisection; the other program takes a power.
     assert!(relative(overlap(1), 9.303316424286104e-8) < 1e-13);

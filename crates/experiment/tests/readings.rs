@@ -1,9 +1,5 @@
 //! A switch changes what it says and nothing else.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_chain::{Chain, FarEnd, Push, Sensor, Tension};
 use hertzchain_experiment::{Experiment, Pick, Reading, preset, presets};
@@ -11,13 +7,8 @@ use hertzchain_experiment::{Experiment, Pick, Reading, preset, presets};
 fn in_reading(name: &str, switches: &[(&str, &str)]) -> Experiment {
     let reading = switches
         .iter()
-        .try_fold(Reading::default(), |reading, (switch, option)| {
-            reading.with(switch, option)
-        });
-    preset(name)
-        .unwrap()
-        .with_reading(&reading.unwrap())
-        .unwrap()
+        .try_fold(Reading::default(), |reading, (switch, option)| reading.with(switch, option));
+    preset(name).unwrap().with_reading(&reading.unwrap()).unwrap()
 }
 
 fn chain(name: &str, switches: &[(&str, &str)]) -> Chain {
@@ -49,10 +40,7 @@ fn chain_default() -> Chain {
 fn changes_only(part: &str, switches: &[(&str, &str)]) -> Chain {
     let changed = chain("pump", switches);
     assert_ne!(format!("{changed:?}"), format!("{:?}", chain_default()));
-    assert_eq!(
-        rest(changed.clone(), part),
-        format!("{:?}", chain_default())
-    );
+    assert_eq!(rest(changed.clone(), part), format!("{:?}", chain_default()));
     changed
 }
 
@@ -63,12 +51,7 @@ fn sections(chain: &Chain) -> Vec<(usize, usize, Vec<&'static str>, bool)> {
         .iter()
         .map(|s| {
             let names = s.laws.iter().map(|law| law.info().name).collect();
-            (
-                *s.contacts.start(),
-                *s.contacts.end(),
-                names,
-                s.material.is_some(),
-            )
+            (*s.contacts.start(), *s.contacts.end(), names, s.material.is_some())
         })
         .collect()
 }
@@ -98,10 +81,7 @@ fn every_option_of_every_switch_can_be_chosen_by_name_in_every_preset() {
 #[test]
 fn the_default_reading_is_the_file_as_written() {
     let pump = chain_default();
-    assert_eq!(
-        sections(&pump),
-        [(0, 6, DRY.to_vec(), false), (7, 40, WET.to_vec(), true)]
-    );
+    assert_eq!(sections(&pump), [(0, 6, DRY.to_vec(), false), (7, 40, WET.to_vec(), true)]);
     assert_eq!(pump.push, Push::None);
     assert_eq!((pump.incline_rad, pump.tension), (0.0, Tension::Allowed));
     assert_eq!(Reading::default().to_string(), "default reading");
@@ -141,20 +121,9 @@ fn laws_and_wet_contacts_change_alone() {
     let everywhere = changed(&[("wet_everywhere", "yes")]);
     assert_eq!(everywhere, [(0, 40, wet(), true)]);
     let wall = changed(&[("wall_liquid", "dry")]);
-    assert_eq!(
-        wall,
-        [
-            (0, 6, dry(), false),
-            (7, 39, wet(), true),
-            (40, 40, dry(), false)
-        ]
-    );
+    assert_eq!(wall, [(0, 6, dry(), false), (7, 39, wet(), true), (40, 40, dry(), false)]);
     let always = changed(&[("cubic_gate", "always")]);
-    let ungated = vec![
-        "elastic_hertz",
-        "damping_viscoelastic",
-        "damping_cubic_ungated",
-    ];
+    let ungated = vec!["elastic_hertz", "damping_viscoelastic", "damping_cubic_ungated"];
     assert_eq!(always[0].2, ungated);
     let three = changed(&[
         ("wet_everywhere", "yes"),
@@ -174,11 +143,7 @@ fn switches_of_wet_contacts_leave_a_dry_chain_alone() {
         ("wall_liquid", "dry"),
         ("poisson", "bounded"),
     ] {
-        assert_eq!(
-            format!("{:?}", chain("dry", &[(switch, option)])),
-            dry,
-            "{switch}"
-        );
+        assert_eq!(format!("{:?}", chain("dry", &[(switch, option)])), dry, "{switch}");
     }
 }
 
@@ -214,10 +179,7 @@ fn counting_moves_the_ends_the_sensor_and_the_oil() {
     assert_eq!(half.sensors(), [Sensor::Bead(7), Sensor::Contact(38)]);
     let counted = in_reading("pump", &[("sensor_counted_from", "striker")]);
     assert_eq!((counted.beads(), counted.sensor_bead()), (40, 6));
-    let ranges: Vec<_> = sections(&chain_of(&counted))
-        .iter()
-        .map(|s| (s.0, s.1))
-        .collect();
+    let ranges: Vec<_> = sections(&chain_of(&counted)).iter().map(|s| (s.0, s.1)).collect();
     assert_eq!(ranges, [(0, 5), (6, 40)]);
     let _ = changes_only("beads", &[("half_bead", "within")]);
 }
@@ -227,27 +189,15 @@ fn the_pick_is_read_by_those_who_pick() {
     let before = chain_default();
     let experiment = in_reading("pump", &[("pick", "flank-10")]);
     assert_eq!(experiment.pick(), Pick::Flank10);
-    assert_eq!(
-        format!("{:?}", chain_of(&experiment)),
-        format!("{before:?}")
-    );
+    assert_eq!(format!("{:?}", chain_of(&experiment)), format!("{before:?}"));
 }
 
 #[test]
 fn a_wrong_switch_or_option_names_the_nearest() {
-    let error = Reading::default()
-        .with("contact6", "wet")
-        .unwrap_err()
-        .to_string();
+    let error = Reading::default().with("contact6", "wet").unwrap_err().to_string();
     assert!(error.contains("did you mean `contact_6`"), "{error}");
-    let error = Reading::default()
-        .with("pick", "peek")
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.contains("did you mean `peak`") && error.contains("flank-50"),
-        "{error}"
-    );
+    let error = Reading::default().with("pick", "peek").unwrap_err().to_string();
+    assert!(error.contains("did you mean `peak`") && error.contains("flank-50"), "{error}");
 }
 
 #[test]

@@ -1,9 +1,5 @@
 //! The table of what stands around the chain: read, checked, without effect.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, Finding, RigPartKind, preset, schema};
 
@@ -44,13 +40,7 @@ fn a_part_is_there_when_it_is_named_and_has_a_name_of_its_own() {
     let rig = opened(&text).rig().cloned().unwrap();
     assert_eq!(rig.part(RigPartKind::Photogate).unwrap().name, "photogate");
     let text = text.replace("photogate = {}", "");
-    assert!(
-        opened(&text)
-            .rig()
-            .unwrap()
-            .part(RigPartKind::Photogate)
-            .is_none()
-    );
+    assert!(opened(&text).rig().unwrap().part(RigPartKind::Photogate).is_none());
     assert!(without_rig().rig().is_none());
 }
 

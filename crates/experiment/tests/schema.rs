@@ -1,9 +1,5 @@
 //! The JSON Schema describes the files that the program reads.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_chain::laws::LAWS;
 use hertzchain_experiment::{Experiment, examples, presets, schema};
@@ -26,14 +22,10 @@ fn conforms(value: &Value, schema: &Value) -> Result<(), String> {
             "maximum" => value.as_f64().is_none_or(|v| v <= rule.as_f64().unwrap()),
             "exclusiveMinimum" => value.as_f64().is_none_or(|v| v > rule.as_f64().unwrap()),
             "exclusiveMaximum" => value.as_f64().is_none_or(|v| v < rule.as_f64().unwrap()),
-            "minItems" => value
-                .as_array()
-                .is_none_or(|v| v.len() as u64 >= rule.as_u64().unwrap()),
-            "required" => rule
-                .as_array()
-                .unwrap()
-                .iter()
-                .all(|k| value.get(k.as_str().unwrap()).is_some()),
+            "minItems" => value.as_array().is_none_or(|v| v.len() as u64 >= rule.as_u64().unwrap()),
+            "required" => {
+                rule.as_array().unwrap().iter().all(|k| value.get(k.as_str().unwrap()).is_some())
+            }
             "items" => {
                 for member in value.as_array().into_iter().flatten() {
                     conforms(member, rule)?;
@@ -42,23 +34,12 @@ fn conforms(value: &Value, schema: &Value) -> Result<(), String> {
             }
             "properties" if schema.get("additionalProperties").is_some() => true,
             "properties" => rule.as_object().unwrap().iter().all(|(key, rule)| {
-                value
-                    .get(key)
-                    .is_none_or(|member| conforms(member, rule).is_ok())
+                value.get(key).is_none_or(|member| conforms(member, rule).is_ok())
             }),
             "additionalProperties" => return members(value, schema),
-            "anyOf" => rule
-                .as_array()
-                .unwrap()
-                .iter()
-                .any(|s| conforms(value, s).is_ok()),
+            "anyOf" => rule.as_array().unwrap().iter().any(|s| conforms(value, s).is_ok()),
             "oneOf" => {
-                rule.as_array()
-                    .unwrap()
-                    .iter()
-                    .filter(|s| conforms(value, s).is_ok())
-                    .count()
-                    == 1
+                rule.as_array().unwrap().iter().filter(|s| conforms(value, s).is_ok()).count() == 1
             }
             other => return Err(format!("unknown keyword {other}")),
         };
@@ -74,12 +55,7 @@ fn members(value: &Value, schema: &Value) -> Result<(), String> {
     if !value.is_object() {
         return Err(format!("{value} is no table"));
     }
-    for required in schema
-        .get("required")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten()
-    {
+    for required in schema.get("required").and_then(Value::as_array).into_iter().flatten() {
         let key = required.as_str().unwrap();
         value.get(key).ok_or(format!("{key} is missing"))?;
     }
@@ -98,12 +74,7 @@ fn members(value: &Value, schema: &Value) -> Result<(), String> {
 fn types(rule: &Value) -> Vec<&str> {
     match rule {
         Value::String(text) => vec![text],
-        _ => rule
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|t| t.as_str().unwrap())
-            .collect(),
+        _ => rule.as_array().unwrap().iter().map(|t| t.as_str().unwrap()).collect(),
     }
 }
 
@@ -172,12 +143,7 @@ fn plain_numbers_conform_where_the_program_reads_them() {
     let linear = "\"elastic_hertz\", { law = \"damping_linear\", coefficient = 1.0 }";
     let dimensionless = file("dimensionless", "1", linear);
     let si = dimensionless.replace("units = \"dimensionless\"\n", "");
-    let texts = [
-        file("dimensionless", "1", hertz),
-        dimensionless,
-        si,
-        file("SI", "1", hertz),
-    ];
+    let texts = [file("dimensionless", "1", hertz), dimensionless, si, file("SI", "1", hertz)];
     for (text, reads) in texts.iter().zip([true, true, false, false]) {
         assert_eq!(read(text), reads, "{text}");
         let fits = conforms(&json_of(text), &schema());
@@ -189,11 +155,7 @@ fn plain_numbers_conform_where_the_program_reads_them() {
 fn every_law_of_the_registry_is_there() {
     let text = schema().to_string();
     for row in LAWS {
-        assert!(
-            text.contains(&format!("\"const\":\"{}\"", row.info.name)),
-            "{}",
-            row.info.name
-        );
+        assert!(text.contains(&format!("\"const\":\"{}\"", row.info.name)), "{}", row.info.name);
         for parameter in row.info.parameters {
             assert!(text.contains(&format!("\"{}\":{{", parameter.name)));
         }

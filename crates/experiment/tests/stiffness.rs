@@ -53,21 +53,13 @@ fn stiffness(chain: &Chain, with_one: &Chain) -> f64 {
 
 /// K in a dimensionless chain of `elastic`, a sharing law and what it is given.
 fn stiffness_without_units(elastic: &str, law: &str, given: &str) -> f64 {
-    let of = |given: &str| {
-        chain(dimensionless(&format!(
-            "{elastic}, {{ {law} = 0.3{given} }}"
-        )))
-    };
+    let of = |given: &str| chain(dimensionless(&format!("{elastic}, {{ {law} = 0.3{given} }}")));
     stiffness(&of(given), &of(", stiffness = 1"))
 }
 
 /// The same in N/m^{3/2} between balls of steel.
 fn stiffness_of_steel(elastic: &str, law: &str, given: &str) -> f64 {
-    let value = if law.contains("ratio") {
-        "0.3"
-    } else {
-        "\"1 us\""
-    };
+    let value = if law.contains("ratio") { "0.3" } else { "\"1 us\"" };
     let of = |given: &str| chain(steel(&format!("{elastic}, {{ {law} = {value}{given} }}")));
     stiffness(&of(given), &of(", stiffness = \"1 N/m^(3/2)\""))
 }
@@ -153,10 +145,7 @@ fn stiffnesses_of_several_hertz_laws_add_or_must_all_be_given() {
     let hertz = hertz.replace("= 4", "= \"1e9 N/m^(3/2)\"");
     let laws = format!("{hertz}, {{ {law} = \"1 us\" }}");
     let refused = steel(&laws).unwrap_err().to_string();
-    let words = [
-        "`damping_viscoelastic` is not clear",
-        "expected a `stiffness`",
-    ];
+    let words = ["`damping_viscoelastic` is not clear", "expected a `stiffness`"];
     assert!(words.iter().all(|w| refused.contains(w)), "{refused}");
 }
 
@@ -194,9 +183,7 @@ fn coefficients(experiment: &Experiment) -> Vec<[f64; 2]> {
     let (chain, _) = experiment.chain(None).unwrap();
     let of = |contact: usize| {
         let mut all = chain.sections.iter();
-        let section = all
-            .find(|section| section.contacts.contains(&contact))
-            .unwrap();
+        let section = all.find(|section| section.contacts.contains(&contact)).unwrap();
         let pair = chain.pair(contact).unwrap();
         [section.laws.first(), section.laws.last()]
             .map(|law| law.unwrap().coefficients(&pair).unwrap()[0])
@@ -214,10 +201,7 @@ fn a_number_with_its_contact_scales_the_others_and_one_without_holds_for_all() {
     };
     let own = laws("", "");
     let k = own[2][0];
-    let stiffer = laws(
-        &format!(", stiffness = \"{} N/m^1.5\", contact = 2", 2.0 * k),
-        "",
-    );
+    let stiffer = laws(&format!(", stiffness = \"{} N/m^1.5\", contact = 2", 2.0 * k), "");
     for (at, (stiffer, own)) in stiffer.iter().zip(&own).enumerate() {
         // Roundings of a few products; the damping has the contact's K.
         close(stiffer[0] / own[0], 2.0, 1e-14);

@@ -1,18 +1,12 @@
 //! Quantities in text against exact decimals and against an independent
 //! calculator.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::units::{parse_quantity, parse_unit};
 use proptest::prelude::*;
 
 fn value(text: &str) -> f64 {
-    parse_quantity(text)
-        .unwrap_or_else(|e| panic!("{text}: {e}"))
-        .value
+    parse_quantity(text).unwrap_or_else(|e| panic!("{text}: {e}")).value
 }
 
 fn mistake(text: &str) -> String {
@@ -53,10 +47,7 @@ fn angles_have_a_dimension_of_their_own() {
     let angle = parse_unit("deg").unwrap().dimension;
     assert!(!angle.agrees_with(&parse_unit("1").unwrap().dimension));
     assert!(
-        !parse_unit("rad/s")
-            .unwrap()
-            .dimension
-            .agrees_with(&parse_unit("Hz").unwrap().dimension)
+        !parse_unit("rad/s").unwrap().dimension.agrees_with(&parse_unit("Hz").unwrap().dimension)
     );
 }
 
@@ -80,29 +71,16 @@ fn half_a_unit_of_the_last_digit_is_what_rounding_hides() {
 
 #[test]
 fn mistakes_say_what_and_where() {
-    assert_eq!(
-        mistake("6.35 mn"),
-        "`mn` is not a known unit; did you mean `mN`?"
-    );
-    assert_eq!(
-        mistake("213 Gpa"),
-        "`Gpa` is not a known unit; did you mean `GPa`?"
-    );
+    assert_eq!(mistake("6.35 mn"), "`mn` is not a known unit; did you mean `mN`?");
+    assert_eq!(mistake("213 Gpa"), "`Gpa` is not a known unit; did you mean `GPa`?");
     assert_eq!(mistake("nan"), "`nan` is not a finite number");
     assert_eq!(mistake("-inf m"), "`-inf m` is not a finite number");
     assert_eq!(mistake("six mm"), "`six mm` does not start with a number");
     assert_eq!(mistake("1e400 m"), "`1e400 m` is too large a number");
-    assert_eq!(
-        mistake("1 m^"),
-        "an exponent such as 2, -1, 1.5 or (3/2) is missing"
-    );
+    assert_eq!(mistake("1 m^"), "an exponent such as 2, -1, 1.5 or (3/2) is missing");
     assert_eq!(mistake("1 m^(1/0)"), "an exponent is divided by 0");
     assert_eq!(mistake("1 (m"), "a closing parenthesis is missing");
-    assert!(
-        mistake("1 N/m s").contains("two ways"),
-        "{}",
-        mistake("1 N/m s")
-    );
+    assert!(mistake("1 N/m s").contains("two ways"), "{}", mistake("1 N/m s"));
     assert!(mistake("").contains("missing"));
     let error = parse_quantity("6.35 mn").unwrap_err();
     assert_eq!(&"6.35 mn"[error.at], "mn");
@@ -114,13 +92,8 @@ fn oracle(text: &str, unit: &str) -> f64 {
     let question = format!("({text}) / (1 {unit}) to unitless");
     let answer =
         fend_core::evaluate(&question, &mut context).unwrap_or_else(|e| panic!("{question}: {e}"));
-    let number = answer
-        .get_main_result()
-        .trim_start_matches("approx. ")
-        .to_owned();
-    number
-        .parse()
-        .unwrap_or_else(|_| panic!("{question} = {number}"))
+    let number = answer.get_main_result().trim_start_matches("approx. ").to_owned();
+    number.parse().unwrap_or_else(|_| panic!("{question} = {number}"))
 }
 
 #[test]
@@ -143,10 +116,7 @@ fn units_agree_with_an_independent_calculator() {
     ] {
         let (ours, theirs) = (value(text), oracle(text, unit));
         // The calculator's ten digits.
-        assert!(
-            (ours / theirs - 1.0).abs() < 1e-9,
-            "{text}: {ours} against {theirs}"
-        );
+        assert!((ours / theirs - 1.0).abs() < 1e-9, "{text}: {ours} against {theirs}");
     }
 }
 

@@ -45,8 +45,5 @@ fn answered(request: Value) -> Result<hertzchain_explore::Reply, Refusal> {
 
 /// The text of a preset.
 pub fn text(preset: &str) -> String {
-    hertzchain_experiment::preset(preset)
-        .unwrap()
-        .text()
-        .to_owned()
+    hertzchain_experiment::preset(preset).unwrap().text().to_owned()
 }

@@ -44,10 +44,7 @@ fn the_cradle_agrees_with_an_integration_and_differs_from_pairwise_collisions() 
     let expected = integrated(stiffness, mass_kg, speed_m_s);
     for (shown, expected) in shown.iter().zip(expected) {
         // Threads of 150 mm turn velocities by 1e-3 of the largest in the 2 ms of the shot.
-        assert!(
-            (shown - expected).abs() < 2e-3 * speed_m_s,
-            "{shown} {expected}"
-        );
+        assert!((shown - expected).abs() < 2e-3 * speed_m_s, "{shown} {expected}");
     }
     // Pairwise collisions leave four balls at rest and give the last the striker's speed.
     assert!(shown[0] < -0.05 * speed_m_s && shown[3] > 0.1 * speed_m_s);

@@ -15,14 +15,8 @@ fn times_of_flight_of_all_presets_are_those_of_the_library_to_the_bit() {
         let experiment = hertzchain_experiment::preset(preset.name).unwrap();
         let (plan, _) = Plan::from_experiment(&experiment, None).unwrap();
         let flight = shoot_estimated(&plan.with_budget()).unwrap().flight;
-        assert_eq!(
-            shot["tof_incident_s"].as_f64(),
-            flight.map(|flight| flight.incident_s)
-        );
-        assert_eq!(
-            shot["tof_reflected_s"].as_f64(),
-            flight.and_then(|flight| flight.reflected_s)
-        );
+        assert_eq!(shot["tof_incident_s"].as_f64(), flight.map(|flight| flight.incident_s));
+        assert_eq!(shot["tof_reflected_s"].as_f64(), flight.and_then(|flight| flight.reflected_s));
     }
 }
 
@@ -68,9 +62,7 @@ fn motion_has_every_body_and_contact_and_sees_the_picked_peaks() {
 fn numbers(base64: &Value) -> Vec<f32> {
     let bytes = STANDARD.decode(base64.as_str().unwrap()).unwrap();
     let words = bytes.chunks_exact(4);
-    words
-        .map(|word| f32::from_le_bytes(word.try_into().unwrap()))
-        .collect()
+    words.map(|word| f32::from_le_bytes(word.try_into().unwrap())).collect()
 }
 
 #[test]
@@ -78,10 +70,7 @@ fn a_mistake_has_the_path_of_its_value() {
     let wrong = text("dry").replace("213 GPa", "213 mm");
     let checked = reply(json!({ "verb": "check", "text": wrong }));
     let mistake = &checked["mistakes"][0];
-    assert_eq!(
-        mistake["path"],
-        json!(["materials", "aisi316", "young_modulus"])
-    );
+    assert_eq!(mistake["path"], json!(["materials", "aisi316", "young_modulus"]));
     assert_eq!(mistake["message"], "`young_modulus` is a length");
     assert_eq!(checked["outline"], Value::Null);
     let wrong = text("dry").replace("77 kg s/m^2", "77 kg");
@@ -99,10 +88,7 @@ fn an_edit_changes_its_value_and_keeps_comments() {
     let edited = edit(json!(["beads", 0, "radius"]), json!("7 mm"));
     let expected = text("dry").replace("radius = \"6.35 mm\"", "radius = \"7 mm\"");
     assert_eq!(edited["text"], expected);
-    let edited = edit(
-        json!(["contacts", 0, "laws", 2, "coefficient"]),
-        json!("80 kg s/m^2"),
-    );
+    let edited = edit(json!(["contacts", 0, "laws", 2, "coefficient"]), json!("80 kg s/m^2"));
     assert_eq!(
         edited["text"],
         text("dry").replace("coefficient = \"77 kg", "coefficient = \"80 kg")
@@ -114,32 +100,20 @@ fn an_edit_changes_its_value_and_keeps_comments() {
     assert_eq!(edited["mistakes"], json!([]));
     assert_eq!(edited["tree"]["near_end"]["force"], "30 N");
     let without = edit(json!(["contacts", 0, "laws", 2]), Value::Null);
-    assert_eq!(
-        without["tree"]["contacts"][0]["laws"]
-            .as_array()
-            .unwrap()
-            .len(),
-        2
-    );
+    assert_eq!(without["tree"]["contacts"][0]["laws"].as_array().unwrap().len(), 2);
 }
 
 #[test]
 fn an_edit_without_a_place_is_refused() {
     let edits = json!([{ "path": ["beads", 7, "radius"], "value": "7 mm" }]);
     let refused = refusal(json!({ "verb": "check", "text": text("dry"), "edits": edits }));
-    assert_eq!(
-        refused,
-        Refusal::Error("no value at beads[7].radius".to_owned())
-    );
+    assert_eq!(refused, Refusal::Error("no value at beads[7].radius".to_owned()));
 }
 
 #[test]
 fn what_would_run_for_hours_is_refused_at_once() {
     let long = text("dry").replace("count = 40", "count = 2000000");
-    assert!(matches!(
-        refusal(json!({ "verb": "shot", "text": long })),
-        Refusal::Error(_)
-    ));
+    assert!(matches!(refusal(json!({ "verb": "shot", "text": long })), Refusal::Error(_)));
     let long = text("dry") + "\n[solver]\nmethod = \"rk4\"\nstep = \"1 ns\"\nduration = \"1 s\"\n";
     assert!(matches!(
         refusal(json!({ "verb": "shot", "text": long })),
@@ -149,10 +123,7 @@ fn what_would_run_for_hours_is_refused_at_once() {
     let refused = refusal(json!({ "verb": "batch", "text": text("dry"), "speeds": speeds }));
     assert!(matches!(refused, Refusal::Error(_)));
     let long = "#".repeat(300_000);
-    assert!(matches!(
-        refusal(json!({ "verb": "check", "text": long })),
-        Refusal::Error(_)
-    ));
+    assert!(matches!(refusal(json!({ "verb": "check", "text": long })), Refusal::Error(_)));
 }
 
 #[test]
@@ -161,10 +132,7 @@ fn what_was_asked_to_stop_stops() {
     stop.ask();
     let request = json!({ "verb": "shot", "text": text("dry") });
     let request: Request = serde_json::from_value(request).unwrap();
-    assert_eq!(
-        answer(&request, &Echo, &stop).unwrap_err(),
-        Refusal::Stopped
-    );
+    assert_eq!(answer(&request, &Echo, &stop).unwrap_err(), Refusal::Stopped);
 }
 
 #[test]
@@ -179,8 +147,5 @@ fn markup_in_an_experiment_stays_text() {
 fn recordings_come_whole_and_refusals_in_the_program_s_words() {
     let asked = |bytes: &[u8]| json!({ "verb": "measure", "name": "shot.csv", "bytes": STANDARD.encode(bytes), "options": {} });
     assert_eq!(reply(asked(b"1,2\n"))["bytes"], 4);
-    assert_eq!(
-        refusal(asked(b"")),
-        Refusal::Error("shot.csv is empty".to_owned())
-    );
+    assert_eq!(refusal(asked(b"")), Refusal::Error("shot.csv is empty".to_owned()));
 }

@@ -11,10 +11,7 @@ fn files() -> Vec<PathBuf> {
 
 #[test]
 fn the_page_is_small() {
-    let bytes: u64 = files()
-        .iter()
-        .map(|file| file.metadata().unwrap().len())
-        .sum();
+    let bytes: u64 = files().iter().map(|file| file.metadata().unwrap().len()).sum();
     assert!(bytes <= 400_000, "{bytes}");
 }
 

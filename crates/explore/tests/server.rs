@@ -33,9 +33,7 @@ impl Served {
     /// The response to a request that is written as given.
     fn raw(&self, request: &str) -> String {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
-        stream
-            .set_read_timeout(Some(Duration::from_secs(60)))
-            .unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
         stream.write_all(request.as_bytes()).unwrap();
         let mut response = String::new();
         stream.read_to_string(&mut response).unwrap();
@@ -61,17 +59,12 @@ impl Served {
                 request += &format!("{name}: {value}\r\n");
             }
         }
-        self.raw(&format!(
-            "{request}Content-Length: {}\r\n\r\n{body}",
-            body.len()
-        ))
+        self.raw(&format!("{request}Content-Length: {}\r\n\r\n{body}", body.len()))
     }
 
     fn get(&self, path: &str) -> String {
         let host = format!("Host: 127.0.0.1:{}", self.port);
-        self.raw(&format!(
-            "GET {path} HTTP/1.1\r\n{host}\r\nConnection: close\r\n\r\n"
-        ))
+        self.raw(&format!("GET {path} HTTP/1.1\r\n{host}\r\nConnection: close\r\n\r\n"))
     }
 }
 
@@ -116,18 +109,9 @@ fn whoever_has_no_token_is_refused() {
 #[test]
 fn other_origins_and_other_names_of_this_machine_are_refused() {
     let served = Served::start();
-    for origin in [
-        "http://example.com",
-        "null",
-        "https://127.0.0.1",
-        "http://127.0.0.1:1",
-    ] {
+    for origin in ["http://example.com", "null", "https://127.0.0.1", "http://127.0.0.1:1"] {
         let changed = [("Origin", origin)];
-        assert_eq!(
-            status(&served.post("/answer", PRESETS, &changed)),
-            403,
-            "{origin}"
-        );
+        assert_eq!(status(&served.post("/answer", PRESETS, &changed)), 403, "{origin}");
     }
     let rebound = format!("example.com:{}", served.port);
     let changed = [("Host", rebound.as_str()), ("Origin", "")];
@@ -137,26 +121,14 @@ fn other_origins_and_other_names_of_this_machine_are_refused() {
 #[test]
 fn what_is_no_request_is_refused() {
     let served = Served::start();
-    for text in [
-        "",
-        "{",
-        "[]",
-        r#"{"verb":"format-disk"}"#,
-        r#"{"verb":"shot"}"#,
-        "\u{0}",
-    ] {
+    for text in ["", "{", "[]", r#"{"verb":"format-disk"}"#, r#"{"verb":"shot"}"#, "\u{0}"] {
         assert_eq!(status(&served.post("/answer", text, &[])), 400, "{text}");
     }
     let deep = "[".repeat(100_000);
     assert_eq!(status(&served.post("/answer", &deep, &[])), 400);
     let plain = [("Content-Type", "text/plain")];
     assert_eq!(status(&served.post("/answer", PRESETS, &plain)), 415);
-    for path in [
-        "/../Cargo.toml",
-        "/..%2fCargo.toml",
-        "/page/app.js",
-        "/src/lib.rs",
-    ] {
+    for path in ["/../Cargo.toml", "/..%2fCargo.toml", "/page/app.js", "/src/lib.rs"] {
         assert_eq!(status(&served.get(path)), 404, "{path}");
     }
 }
@@ -164,16 +136,11 @@ fn what_is_no_request_is_refused() {
 #[test]
 fn a_body_of_a_gigabyte_is_refused_before_it_comes() {
     let served = Served::start();
-    let headers: String = served
-        .headers()
-        .iter()
-        .map(|(name, value)| format!("{name}: {value}\r\n"))
-        .collect();
+    let headers: String =
+        served.headers().iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
     let request = format!("POST /answer HTTP/1.1\r\n{headers}Content-Length: 1073741824\r\n\r\n");
     let mut stream = TcpStream::connect(("127.0.0.1", served.port)).unwrap();
-    stream
-        .set_read_timeout(Some(Duration::from_secs(10)))
-        .unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(10))).unwrap();
     stream.write_all(request.as_bytes()).unwrap();
     let mut head = [0; 12];
     stream.read_exact(&mut head).unwrap();
@@ -218,10 +185,8 @@ fn work_ends_when_its_page_goes_away() {
     // As many as may run at a time, each from a page that closes at once.
     for lane in 0..3 {
         let headers = served.headers();
-        let headers: String = headers
-            .iter()
-            .map(|(name, value)| format!("{name}: {value}\r\n"))
-            .collect();
+        let headers: String =
+            headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
         let fit = fit();
         let request = format!(
             "POST /answer?lane={lane} HTTP/1.1\r\n{headers}Content-Length: {}\r\n\r\n{fit}",

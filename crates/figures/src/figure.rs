@@ -330,13 +330,9 @@ impl PanelGrid {
     fn frame(&self, index: usize) -> Rect {
         let (column, row) = (index % self.columns, index / self.columns);
         let before = self.across.iter().take(column);
-        let left: f64 = before
-            .map(|s| s.left + s.right + self.frame.0 + GUTTER)
-            .sum();
+        let left: f64 = before.map(|s| s.left + s.right + self.frame.0 + GUTTER).sum();
         let before = self.down.iter().take(row);
-        let top: f64 = before
-            .map(|s| s.top + s.bottom + self.frame.1 + GUTTER)
-            .sum();
+        let top: f64 = before.map(|s| s.top + s.bottom + self.frame.1 + GUTTER).sum();
         let x = MARGIN + left + self.across[column].left;
         let y = MARGIN + top + self.down[row].top;
         Rect::sized(x, y, self.frame.0, self.frame.1)

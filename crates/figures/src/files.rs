@@ -46,11 +46,7 @@ pub(crate) fn png(
     height_mm: f64,
     dpi: f64,
 ) -> Result<Vec<u8>, FigureError> {
-    let size = FigureError::Size {
-        width_mm,
-        height_mm,
-        dpi,
-    };
+    let size = FigureError::Size { width_mm, height_mm, dpi };
     let (Some(width), Some(height)) = (pixels(width_mm, dpi), pixels(height_mm, dpi)) else {
         return Err(size);
     };
@@ -62,11 +58,7 @@ pub(crate) fn png(
     let (sx, sy) = (width as f32 / drawn.width(), height as f32 / drawn.height());
     resvg::render(&tree, Transform::from_scale(sx, sy), &mut page.as_mut());
     // The page is opaque white below everything, so alpha can be dropped.
-    let rgb: Vec<u8> = page
-        .data()
-        .chunks_exact(4)
-        .flat_map(|p| [p[0], p[1], p[2]])
-        .collect();
+    let rgb: Vec<u8> = page.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
     rgb_png(width as usize, height as usize, &rgb, Some(dpi)).ok_or(FigureError::Encode)
 }
 
@@ -131,10 +123,8 @@ const SHADES: u16 = 32;
 pub(crate) fn pdf(svg: &str, (width, height): (f64, f64)) -> Result<Vec<u8>, FigureError> {
     let tree =
         Tree::from_str(svg, &Options::default()).map_err(|e| FigureError::Render(e.to_string()))?;
-    let (across, down) = (
-        width / f64::from(tree.size().width()),
-        height / f64::from(tree.size().height()),
-    );
+    let (across, down) =
+        (width / f64::from(tree.size().width()), height / f64::from(tree.size().height()));
     let mut page = Page::default();
     // The y axis of a PDF points upward.
     page.write(&format!("{across} 0 0 {} 0 {height} cm\n", -down));
@@ -170,14 +160,7 @@ impl Page {
 
     /// Saves the state, and sets transform and opacity.
     fn open(&mut self, transform: Transform, opacity: f32) {
-        let Transform {
-            sx,
-            kx,
-            ky,
-            sy,
-            tx,
-            ty,
-        } = transform;
+        let Transform { sx, kx, ky, sy, tx, ty } = transform;
         self.write(&format!("q {sx} {ky} {kx} {sy} {tx} {ty} cm "));
         if opacity < 1.0 {
             self.write(&format!("/A{} gs ", self.opacities.len()));
@@ -217,14 +200,7 @@ impl Page {
         if let Some(last) = shade.stops().last() {
             self.write(&format!("{} rg {outline}f ", rgb(last.color())));
         }
-        let Transform {
-            sx,
-            kx,
-            ky,
-            sy,
-            tx,
-            ty,
-        } = shade.transform();
+        let Transform { sx, kx, ky, sy, tx, ty } = shade.transform();
         self.write(&format!("{sx} {ky} {kx} {sy} {tx} {ty} cm "));
         for step in (0..SHADES).rev() {
             let share = (f32::from(step) + 0.5) / f32::from(SHADES);
@@ -246,10 +222,7 @@ impl Page {
             let (width, height) = (image.size().width(), image.size().height());
             self.open(image.abs_transform(), 1.0);
             let number = self.images.len();
-            self.write(&format!(
-                "{width} 0 0 {} 0 {height} cm /I{number} Do Q\n",
-                -height
-            ));
+            self.write(&format!("{width} 0 0 {} 0 {height} cm /I{number} Do Q\n", -height));
             self.images.push(object);
         }
     }
@@ -302,11 +275,7 @@ fn colour_at(shade: &RadialGradient, share: f32) -> String {
     let part = ((share - from.offset().get()) / span).clamp(0.0, 1.0);
     let mix = |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * part).round() as u8;
     let (a, b) = (from.color(), to.color());
-    rgb(Color {
-        red: mix(a.red, b.red),
-        green: mix(a.green, b.green),
-        blue: mix(a.blue, b.blue),
-    })
+    rgb(Color { red: mix(a.red, b.red), green: mix(a.green, b.green), blue: mix(a.blue, b.blue) })
 }
 
 /// Operators that make a path the current one.
@@ -339,11 +308,7 @@ fn outline(path: &tiny_skia::Path) -> String {
 
 /// An image of eight bits a channel, RGB or with a palette; its compressed rows stay as they are.
 fn image_object(png: &[u8]) -> Option<Vec<u8>> {
-    let number = |from: usize| {
-        Some(u32::from_be_bytes(
-            png.get(from..from + 4)?.try_into().ok()?,
-        ))
-    };
+    let number = |from: usize| Some(u32::from_be_bytes(png.get(from..from + 4)?.try_into().ok()?));
     let (width, height) = (number(16)?, number(20)?);
     let (mut data, mut palette) = (Vec::new(), String::new());
     let mut at = 8;
@@ -359,10 +324,7 @@ fn image_object(png: &[u8]) -> Option<Vec<u8>> {
     }
     let (space, channels) = match palette.len() / 6 {
         0 => ("/DeviceRGB".to_owned(), 3),
-        colours => (
-            format!("[/Indexed /DeviceRGB {} <{palette}>]", colours - 1),
-            1,
-        ),
+        colours => (format!("[/Indexed /DeviceRGB {} <{palette}>]", colours - 1), 1),
     };
     let keys = format!(
         "/Type /XObject /Subtype /Image /Width {width} /Height {height} /BitsPerComponent 8 \

@@ -84,17 +84,14 @@ impl HeatMap {
 
     /// Lowest and highest value of the colour bar.
     fn range(&self) -> (f64, f64) {
-        let asked = self
-            .limits
-            .filter(|(a, b)| a.is_finite() && b.is_finite() && a < b);
+        let asked = self.limits.filter(|(a, b)| a.is_finite() && b.is_finite() && a < b);
         asked.unwrap_or_else(|| self.data_range())
     }
 
     fn data_range(&self) -> (f64, f64) {
         let finite = self.values.iter().copied().filter(|v| v.abs() <= 1e300);
-        let (lo, hi) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| {
-            (lo.min(v), hi.max(v))
-        });
+        let (lo, hi) =
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)));
         let largest = lo.abs().max(hi.abs());
         if lo > hi || largest < 1e-290 {
             (0.0, 1.0)
@@ -115,22 +112,14 @@ impl HeatMap {
     }
 
     fn bar_ticks(&self, style: &ChartStyle, height: f64) -> Ticks {
-        let room = Room {
-            length: height,
-            font: style.small,
-            side_by_side: false,
-        };
+        let room = Room { length: height, font: style.small, side_by_side: false };
         ticks(&self.scale(), &room)
     }
 
     /// Room for bar, numbers and label: right of the frame, and above it.
     pub(crate) fn bar_room(&self, style: &ChartStyle, height: f64) -> (f64, f64) {
         let label = TextLine::new(&self.label, style.label);
-        let label = if self.label.is_empty() {
-            0.0
-        } else {
-            label.height() + 3.0
-        };
+        let label = if self.label.is_empty() { 0.0 } else { label.height() + 3.0 };
         let found = self.bar_ticks(style, height);
         let above = found.exponent.map_or(0.0, |_| 1.5 * style.small);
         (GAP + BAR + 3.0 + found.widest(style.small) + label, above)
@@ -144,11 +133,8 @@ impl HeatMap {
         if let Some(png) = rgb_png(1, 256, &shades, None) {
             svg.image(&bar, &png);
         }
-        let (found, scale, ink) = (
-            self.bar_ticks(style, bar.height()),
-            self.scale(),
-            Colour::BLACK,
-        );
+        let (found, scale, ink) =
+            (self.bar_ticks(style, bar.height()), self.scale(), Colour::BLACK);
         let mut path = PathData::new();
         path.rect(&bar);
         for tick in &found.major {
@@ -164,13 +150,7 @@ impl HeatMap {
         }
         let label = TextLine::new(&self.label, style.label).shrunk_to(frame.height());
         let x = bar.x1 + 6.0 + found.widest(style.small) + label.ascent();
-        label.draw_turned(
-            svg,
-            Point::new(x, bar.centre().y),
-            Anchor::CENTRE,
-            ink,
-            90.0,
-        );
+        label.draw_turned(svg, Point::new(x, bar.centre().y), Anchor::CENTRE, ink, 90.0);
     }
 
     /// Draws the map over the frame of `plot`.
@@ -182,11 +162,7 @@ impl HeatMap {
         let (lo, hi) = self.range();
         let mut data = Vec::with_capacity(width * height);
         for row in &rows {
-            data.extend(
-                columns
-                    .iter()
-                    .map(|column| level(self.strongest(column, row), lo, hi)),
-            );
+            data.extend(columns.iter().map(|column| level(self.strongest(column, row), lo, hi)));
         }
         // Encoding fails only if memory cannot hold it; the frame then stays empty.
         if let Some(png) = indexed_png(width, height, &palette(self.map), &data) {
@@ -217,21 +193,13 @@ fn pixels(length: f64) -> usize {
 
 fn level(value: f64, lo: f64, hi: f64) -> u8 {
     let share = (value - lo) / (hi - lo);
-    if share.is_nan() {
-        MISSING
-    } else {
-        (share.clamp(0.0, 1.0) * 254.0).round() as u8
-    }
+    if share.is_nan() { MISSING } else { (share.clamp(0.0, 1.0) * 254.0).round() as u8 }
 }
 
 /// 255 colours, so that a diverging map has one in the exact middle, and the missing one.
 fn palette(map: ColourMap) -> Vec<u8> {
     let share = |i: u8| {
-        if i == MISSING {
-            f64::NAN
-        } else {
-            f64::from(i) / 254.0
-        }
+        if i == MISSING { f64::NAN } else { f64::from(i) / 254.0 }
     };
     let colours = (0..=255).map(|i| map.colour(share(i)));
     colours.flat_map(|c| [c.0, c.1, c.2]).collect()
@@ -252,11 +220,7 @@ fn cells(scale: &Scale, edges: (f64, f64), count: usize, pixels: usize) -> Vec<R
         }
         let first = (from + 0.5).floor().max(0.0) as usize;
         let last = ((to + 0.5).floor() as usize).min(count);
-        if first < last {
-            first..last
-        } else {
-            middle as usize..middle as usize + 1
-        }
+        if first < last { first..last } else { middle as usize..middle as usize + 1 }
     };
     (0..pixels).map(cells).collect()
 }

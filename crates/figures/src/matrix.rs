@@ -71,10 +71,7 @@ impl VerdictMatrix {
     #[must_use]
     pub fn new(columns: &[&str]) -> Self {
         let columns = columns.iter().map(|c| (*c).to_owned()).collect();
-        Self {
-            columns,
-            ..Self::default()
-        }
+        Self { columns, ..Self::default() }
     }
 
     /// Adds a row; cells beyond the columns are dropped, missing ones stay empty.
@@ -164,15 +161,7 @@ impl MatrixLayout {
         let longest = headers.iter().map(TextLine::width).fold(0.0, f64::max);
         let upright = longest <= cell - 3.0;
         let header = if upright { 1.3 * FONT } else { longest } + PADDING;
-        let mut layout = Self {
-            claims,
-            headers,
-            below: Vec::new(),
-            labels,
-            cell,
-            header,
-            upright,
-        };
+        let mut layout = Self { claims, headers, below: Vec::new(), labels, cell, header, upright };
         layout.below = layout.lines_below(matrix, page);
         layout
     }
@@ -236,11 +225,7 @@ impl MatrixLayout {
             self.draw_claim(svg, row, y + 0.5 * height);
             for (column, verdict) in cells.iter().enumerate() {
                 let x = self.cell_centre(column) - 0.5 * self.cell;
-                draw_symbol(
-                    svg,
-                    *verdict,
-                    &Rect::sized(x, y, self.cell, height).grown(-0.5),
-                );
+                draw_symbol(svg, *verdict, &Rect::sized(x, y, self.cell, height).grown(-0.5));
             }
             rules.segment(Point::new(0.0, y), Point::new(right, y));
             y += height;
@@ -276,9 +261,7 @@ impl MatrixLayout {
     }
 
     fn key_width(&self) -> f64 {
-        let widths = Verdict::ALL
-            .iter()
-            .map(|v| TextLine::new(v.name(), FONT).width() + KEY_ROOM);
+        let widths = Verdict::ALL.iter().map(|v| TextLine::new(v.name(), FONT).width() + KEY_ROOM);
         widths.sum()
     }
 
@@ -288,12 +271,7 @@ impl MatrixLayout {
         for verdict in Verdict::ALL {
             draw_symbol(svg, verdict, &Rect::sized(x, middle - 5.0, 12.0, 10.0));
             let name = TextLine::new(verdict.name(), FONT);
-            name.draw(
-                svg,
-                Point::new(x + 16.0, middle),
-                Anchor::LEFT_MIDDLE,
-                Colour::BLACK,
-            );
+            name.draw(svg, Point::new(x + 16.0, middle), Anchor::LEFT_MIDDLE, Colour::BLACK);
             x += name.width() + KEY_ROOM;
         }
     }
@@ -308,10 +286,7 @@ fn below_height(lines: &[TextLine]) -> f64 {
 /// what a font offers.
 fn draw_symbol(svg: &mut Svg, verdict: Verdict, cell: &Rect) {
     svg.rect(cell, &Paint::fill(verdict.colour()));
-    let (c, r) = (
-        cell.centre(),
-        0.3 * cell.width().min(cell.height()).min(11.0),
-    );
+    let (c, r) = (cell.centre(), 0.3 * cell.width().min(cell.height()).min(11.0));
     let at = |dx: f64, dy: f64| Point::new(c.x + dx * r, c.y + dy * r);
     let white = Paint::line(Colour::WHITE, 0.42 * r);
     match verdict {
@@ -337,9 +312,7 @@ fn draw_half_circle(svg: &mut Svg, c: Point, r: f64) {
     let ink = Colour::grey(60);
     svg.circle(c, r, &Paint::line(ink, 0.25 * r));
     let mut half = PathData::new();
-    half.move_to(Point::new(c.x, c.y + r))
-        .arc_to(r, false, true, Point::new(c.x, c.y - r))
-        .close();
+    half.move_to(Point::new(c.x, c.y + r)).arc_to(r, false, true, Point::new(c.x, c.y - r)).close();
     svg.path(&half, &Paint::fill(ink));
 }
 

@@ -126,30 +126,18 @@ impl RigDrawing {
             remark += &format!("; the track, drawn level, is inclined by $\\alpha$ = {angle}°");
         }
         let line = TextLine::new(&format!("{remark}."), 6.4).shrunk_to(WIDTH);
-        line.draw(
-            svg,
-            Point::new(0.0, below - 3.0),
-            Anchor::LEFT,
-            Colour::grey(100),
-        );
+        line.draw(svg, Point::new(0.0, below - 3.0), Anchor::LEFT, Colour::grey(100));
         svg.close();
     }
 
     /// Room above and below the beads' centres.
     fn extent(&self, labels: &Stacked) -> (f64, f64) {
         let (above, below) = labels.heights();
-        (
-            above - self.roof(),
-            Drawing::new(self).floor() + below + REMARK,
-        )
+        (above - self.roof(), Drawing::new(self).floor() + below + REMARK)
     }
 
     const fn roof(&self) -> f64 {
-        if self.recorder.is_empty() {
-            ROOF
-        } else {
-            OVER_RECORDER
-        }
+        if self.recorder.is_empty() { ROOF } else { OVER_RECORDER }
     }
 
     /// The sensor bead if it is in the row.
@@ -164,30 +152,20 @@ impl RigDrawing {
 
     /// Width of the half-bead in diameters.
     fn half_bead(&self) -> f64 {
-        if self.far_end == FarEnd::HalfBead {
-            0.5
-        } else {
-            0.0
-        }
+        if self.far_end == FarEnd::HalfBead { 0.5 } else { 0.0 }
     }
 
     /// Width of the wall's sensor, and of stop and structure.
     fn end_widths(&self) -> (f64, f64) {
         let closed = self.far_end != FarEnd::Open;
         let stop = closed && !self.stop.is_empty();
-        (
-            sum(&[(self.wall_sensor && closed, SENSOR)]),
-            sum(&[(stop, STOP), (closed, STRUCTURE)]),
-        )
+        (sum(&[(self.wall_sensor && closed, SENSOR)]), sum(&[(stop, STOP), (closed, STRUCTURE)]))
     }
 }
 
 /// Sum of the widths of what there is.
 fn sum(parts: &[(bool, f64)]) -> f64 {
-    parts
-        .iter()
-        .map(|(there, width)| if *there { *width } else { 0.0 })
-        .sum()
+    parts.iter().map(|(there, width)| if *there { *width } else { 0.0 }).sum()
 }
 
 /// A drawing with the positions of its parts in points.
@@ -344,12 +322,8 @@ impl<'a> Drawing<'a> {
             let (reach, shoulder, rail) = (radius + 1.3, centre.y - radius - 2.2, -22.0);
             let foot = centre.y - 0.35 * radius;
             let sides = [-reach, reach].map(|dx| centre.x + dx);
-            let fork = [
-                (sides[0], foot),
-                (sides[0], shoulder),
-                (sides[1], shoulder),
-                (sides[1], foot),
-            ];
+            let fork =
+                [(sides[0], foot), (sides[0], shoulder), (sides[1], shoulder), (sides[1], foot)];
             polyline(svg, &fork, &Paint::line(Colour::GREEN, 1.2));
             polyline(
                 svg,
@@ -365,11 +339,7 @@ impl<'a> Drawing<'a> {
         }
         if !rig.photogate.is_empty() {
             let beam = [(self.gate, -r - 3.0), (self.gate, r)];
-            polyline(
-                svg,
-                &beam,
-                &Paint::dashed(Colour::VERMILION, 0.8, &[1.8, 1.3]),
-            );
+            polyline(svg, &beam, &Paint::dashed(Colour::VERMILION, 0.8, &[1.8, 1.3]));
             block(svg, (self.gate - 2.6, -r - 7.5), (5.2, 4.5), INK);
             labels.above(Point::new(self.gate, -r - 6.0), &rig.photogate);
         }
@@ -438,8 +408,7 @@ impl<'a> Drawing<'a> {
         if rig.far_end == FarEnd::HalfBead {
             let (x, radius) = (self.end + r, r - 0.25);
             let mut half = PathData::new();
-            half.move_to(Point::new(x, radius))
-                .arc_to(radius, false, true, Point::new(x, -radius));
+            half.move_to(Point::new(x, radius)).arc_to(radius, false, true, Point::new(x, -radius));
             let shade = svg.ball_gradient(STEEL);
             svg.path(half.close(), &Paint::gradient(&shade).outlined(INK, 0.5));
             labels.below(Point::new(self.end + 0.45 * r, 0.5 * r), "half-bead");
@@ -450,10 +419,7 @@ impl<'a> Drawing<'a> {
                 svg.rect(&disc, &Paint::fill(PIEZO));
                 let name = [rig.sensor_label.as_str(), "wall sensor"];
                 let name = name.into_iter().find(|name| !name.is_empty());
-                labels.below(
-                    Point::new(self.face - 1.8, 0.8 * r),
-                    name.unwrap_or_default(),
-                );
+                labels.below(Point::new(self.face - 1.8, 0.8 * r), name.unwrap_or_default());
             }
             let mut x = self.face;
             if !rig.stop.is_empty() {
@@ -481,11 +447,7 @@ impl<'a> Drawing<'a> {
         for (first, last, wet) in groups(self.rig) {
             let from = self.contact(first) - 0.22 * self.diameter;
             let to = self.contact(last) + 0.22 * self.diameter;
-            let colour = if wet {
-                OIL.mixed(Colour::BLACK, 0.35)
-            } else {
-                INK
-            };
+            let colour = if wet { OIL.mixed(Colour::BLACK, 0.35) } else { INK };
             let corners = [(from, y - 3.0), (from, y), (to, y), (to, y - 3.0)];
             polyline(svg, &corners, &Paint::line(colour, 0.9));
             // Away from the sensor's leader if that runs through the middle.
@@ -515,10 +477,7 @@ impl<'a> Drawing<'a> {
         let (rig, top) = (self.rig, OVER_RECORDER + 5.0);
         let inside = rig.sensor().and_then(|n| self.bead(n));
         let wall = rig.wall_sensor && rig.far_end != FarEnd::Open;
-        let ends: Vec<f64> = inside
-            .into_iter()
-            .chain(wall.then_some(self.face - 1.8))
-            .collect();
+        let ends: Vec<f64> = inside.into_iter().chain(wall.then_some(self.face - 1.8)).collect();
         let (Some(first), Some(last), false) = (ends.first(), ends.last(), rig.recorder.is_empty())
         else {
             return;
@@ -542,30 +501,18 @@ impl<'a> Drawing<'a> {
         svg.rect(&case, &Paint::fill(Colour::WHITE).outlined(PIEZO, 0.8));
         for (i, line) in lines.iter().enumerate() {
             let middle = top + 0.5 * PADDING + LEADING * (i as f64 + 0.5);
-            line.draw(
-                svg,
-                Point::new(case.centre().x, middle),
-                Anchor::MIDDLE,
-                Colour::BLACK,
-            );
+            line.draw(svg, Point::new(case.centre().x, middle), Anchor::MIDDLE, Colour::BLACK);
         }
     }
 }
 
 /// A text and another after a comma, if there is one.
 fn with_comma(text: &str, other: &str) -> String {
-    if other.is_empty() {
-        text.to_owned()
-    } else {
-        format!("{text}, {other}")
-    }
+    if other.is_empty() { text.to_owned() } else { format!("{text}, {other}") }
 }
 
 fn block(svg: &mut Svg, (x, y): (f64, f64), (width, height): (f64, f64), colour: Colour) {
-    svg.rect(
-        &Rect::sized(x, y, width, height),
-        &Paint::fill(colour).outlined(INK, 0.5),
-    );
+    svg.rect(&Rect::sized(x, y, width, height), &Paint::fill(colour).outlined(INK, 0.5));
 }
 
 fn polyline(svg: &mut Svg, points: &[(f64, f64)], paint: &Paint) {
@@ -576,11 +523,7 @@ fn polyline(svg: &mut Svg, points: &[(f64, f64)], paint: &Paint) {
 /// A shaded ball.
 fn draw_bead(svg: &mut Svg, centre: Point, radius: f64) {
     let shade = svg.ball_gradient(STEEL);
-    svg.circle(
-        centre,
-        radius - 0.25,
-        &Paint::gradient(&shade).outlined(INK, 0.5),
-    );
+    svg.circle(centre, radius - 0.25, &Paint::gradient(&shade).outlined(INK, 0.5));
 }
 
 /// A meniscus around the contact of two balls at `x`: waisted, widest where it wets them.
@@ -589,26 +532,17 @@ fn draw_oil(svg: &mut Svg, x: f64, radius: f64) {
     let wetted = radius - (radius * radius - half_height * half_height).sqrt();
     let (at, waist) = (|dx, y| Point::new(x + dx, y), 0.55 * half_height);
     let mut path = PathData::new();
-    path.move_to(at(-wetted, -half_height))
-        .quad_to(at(0.0, -waist), at(wetted, -half_height));
-    path.line_to(at(wetted, half_height))
-        .quad_to(at(0.0, waist), at(-wetted, half_height));
+    path.move_to(at(-wetted, -half_height)).quad_to(at(0.0, -waist), at(wetted, -half_height));
+    path.line_to(at(wetted, half_height)).quad_to(at(0.0, waist), at(-wetted, half_height));
     svg.path(path.close(), &Paint::fill(OIL));
 }
 
 fn draw_arrow(svg: &mut Svg, from: Point, length: f64) {
     let tip = from.x + length;
-    polyline(
-        svg,
-        &[(from.x, from.y), (tip - 2.5, from.y)],
-        &Paint::line(Colour::VERMILION, 1.1),
-    );
+    polyline(svg, &[(from.x, from.y), (tip - 2.5, from.y)], &Paint::line(Colour::VERMILION, 1.1));
     let corners = [(tip, 0.0), (tip - 4.2, -2.2), (tip - 4.2, 2.2)];
     let corners = corners.map(|(x, dy)| Point::new(x, from.y + dy));
-    svg.path(
-        PathData::new().polygon(&corners),
-        &Paint::fill(Colour::VERMILION),
-    );
+    svg.path(PathData::new().polygon(&corners), &Paint::fill(Colour::VERMILION));
 }
 
 /// Runs of neighbouring beads to draw if there is room for `capacity` beads: all of them, or
@@ -616,17 +550,11 @@ fn draw_arrow(svg: &mut Svg, from: Point, length: f64) {
 fn runs(rig: &RigDrawing, capacity: usize) -> Vec<(usize, usize)> {
     let last = rig.beads;
     if last <= capacity {
-        return if last == 0 {
-            Vec::new()
-        } else {
-            vec![(1, last)]
-        };
+        return if last == 0 { Vec::new() } else { vec![(1, last)] };
     }
     // Beads kept at either end; a narrow drawing has room for one.
     let kept = if capacity < 9 { 1 } else { 2 };
-    let sensor = rig
-        .sensor()
-        .map(|n| ((n - 1).max(1), n.saturating_add(1).min(last)));
+    let sensor = rig.sensor().map(|n| ((n - 1).max(1), n.saturating_add(1).min(last)));
     let end = (last.saturating_sub(kept) + 1, last);
     let mut out: Vec<(usize, usize)> = Vec::new();
     for (first, last) in [Some((1, kept)), sensor, Some(end)].into_iter().flatten() {
@@ -642,18 +570,12 @@ fn runs(rig: &RigDrawing, capacity: usize) -> Vec<(usize, usize)> {
 /// Neighbouring contacts of one kind: first, last, wet.
 fn groups(rig: &RigDrawing) -> Vec<(usize, usize, bool)> {
     let begin = usize::from(rig.striker_ratio.is_none());
-    let end = rig
-        .beads
-        .saturating_sub(usize::from(rig.far_end == FarEnd::Open));
+    let end = rig.beads.saturating_sub(usize::from(rig.far_end == FarEnd::Open));
     let wet = match rig.wet_contacts {
         Some((a, b)) if a <= b && a <= end && b >= begin => (a.max(begin), b.min(end) + 1),
         _ => (end + 1, end + 1),
     };
-    let all = [
-        (begin, wet.0, false),
-        (wet.0, wet.1, true),
-        (wet.1, end + 1, false),
-    ];
+    let all = [(begin, wet.0, false), (wet.0, wet.1, true), (wet.1, end + 1, false)];
     let some = all.into_iter().filter(|(from, to, _)| from < to);
     some.map(|(from, to, wet)| (from, to - 1, wet)).collect()
 }

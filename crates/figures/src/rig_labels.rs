@@ -33,11 +33,7 @@ struct Label {
 impl Label {
     fn new(anchor: Point, text: &str, colour: Colour) -> Self {
         let lines = wrap(text, FONT, WIDEST, 3);
-        Self {
-            anchor,
-            lines,
-            colour,
-        }
+        Self { anchor, lines, colour }
     }
 
     /// x of its leader, width and height of its text.
@@ -91,11 +87,7 @@ impl Labels {
             stacked(&sizes, WIDTH)
         };
         let (upper, lower) = (stack(&self.above), stack(&self.below));
-        Stacked {
-            labels: self,
-            upper,
-            lower,
-        }
+        Stacked { labels: self, upper, lower }
     }
 }
 
@@ -150,10 +142,7 @@ fn stacked(labels: &[Size], page: f64) -> Stack {
     // Every way to choose one option each.
     let extended = |before: Vec<Vec<f64>>, own: Vec<f64>| -> Vec<Vec<f64>> {
         let with = |chosen: &Vec<f64>, left: &f64| [&chosen[..], &[*left]].concat();
-        before
-            .iter()
-            .flat_map(|chosen| own.iter().map(move |left| with(chosen, left)))
-            .collect()
+        before.iter().flat_map(|chosen| own.iter().map(move |left| with(chosen, left))).collect()
     };
     let choices = match labels.len() <= MOST {
         true => options.fold(vec![Vec::new()], extended),
@@ -201,23 +190,16 @@ impl Stack {
 
     fn of(labels: &[Size], lefts: &[f64], offsets: impl Iterator<Item = f64>) -> Self {
         let places: Vec<(f64, f64)> = lefts.iter().copied().zip(offsets).collect();
-        let ends = labels
-            .iter()
-            .zip(&places)
-            .map(|(label, (_, offset))| offset + label.2);
-        Self {
-            height: ends.fold(0.0, f64::max),
-            places,
-        }
+        let ends = labels.iter().zip(&places).map(|(label, (_, offset))| offset + label.2);
+        Self { height: ends.fold(0.0, f64::max), places }
     }
 
     /// Low stacks first, then short leaders, then centred texts.
     fn cost(&self, labels: &[Size]) -> f64 {
         let offsets: f64 = self.places.iter().map(|(_, offset)| offset).sum();
         let aside = self.places.iter().zip(labels);
-        let aside: f64 = aside
-            .map(|((left, _), (x, width, _))| (left + 0.5 * width - x).abs())
-            .sum();
+        let aside: f64 =
+            aside.map(|((left, _), (x, width, _))| (left + 0.5 * width - x).abs()).sum();
         10.0 * self.height + offsets + 0.05 * aside
     }
 }

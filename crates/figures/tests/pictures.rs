@@ -25,10 +25,8 @@ fn every_kind() -> Vec<Figure> {
     let heat = HeatMap::new(3, 2, &[0.0, 1.0, 2.0, -1.0, f64::NAN, 4.0])
         .colours(ColourMap::Diverging)
         .label("$v$ (m/s)");
-    let table = VerdictMatrix::new(&["default", "preload 0.24 N"]).row(
-        "Motor oil lengthens the ToF",
-        &[Verdict::Holds, Verdict::NotDecidable],
-    );
+    let table = VerdictMatrix::new(&["default", "preload 0.24 N"])
+        .row("Motor oil lengthens the ToF", &[Verdict::Holds, Verdict::NotDecidable]);
     let rig = RigDrawing {
         beads: 40,
         sensor_bead: Some(7),
@@ -80,12 +78,8 @@ fn of_fits() -> Vec<Figure> {
         standard_error: Some(8.0),
         levels: &[(1.0, "68 %"), (3.84, "95 %")],
     };
-    let values = |values, directions| SingularValues {
-        names: &labels,
-        values,
-        directions,
-        floor: 1e-3,
-    };
+    let values =
+        |values, directions| SingularValues { names: &labels, values, directions, floor: 1e-3 };
     vec![
         corner(&samples(500)),
         corner(&samples(1)),
@@ -112,11 +106,7 @@ fn check(svg: &str) {
                 && b.top() >= -slack
                 && b.right() <= width
                 && b.bottom() <= height;
-            assert!(
-                on_page,
-                "text {} at {b:?} on a page of {width} x {height}",
-                group.id()
-            );
+            assert!(on_page, "text {} at {b:?} on a page of {width} x {height}", group.id());
         }
     });
 }
@@ -256,12 +246,7 @@ fn text_of_an_svg_is_text_unless_outlines_are_asked_for() {
     let document = roxmltree::Document::parse(&svg).expect("well-formed XML");
     let texts = document.descendants().filter(|n| n.has_tag_name("text"));
     let texts: Vec<String> = texts
-        .map(|n| {
-            n.descendants()
-                .filter(|n| n.is_text())
-                .filter_map(|n| n.text())
-                .collect()
-        })
+        .map(|n| n.descendants().filter(|n| n.is_text()).filter_map(|n| n.text()).collect())
         .collect();
     assert!(
         texts.contains(&"Time (µs)".to_owned()) && texts.contains(&"Fwall (N)".to_owned()),
@@ -280,10 +265,7 @@ fn every_kind_of_picture_is_a_pdf_whose_table_points_at_its_objects() {
         let entries = table.lines().filter(|line| line.ends_with(" 00000 n "));
         for (i, entry) in entries.enumerate() {
             let at: usize = entry[..10].parse().expect("an offset");
-            assert!(
-                pdf[at..].starts_with(format!("{} 0 obj\n", i + 1).as_bytes()),
-                "{entry}"
-            );
+            assert!(pdf[at..].starts_with(format!("{} 0 obj\n", i + 1).as_bytes()), "{entry}");
         }
     }
     let map = every_kind()[3].pdf().expect("renders");
@@ -291,9 +273,7 @@ fn every_kind_of_picture_is_a_pdf_whose_table_points_at_its_objects() {
 }
 
 fn decoded(png: &[u8]) -> (u32, u32, Vec<u8>, Option<u32>) {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(png))
-        .read_info()
-        .expect("a PNG");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a PNG");
     let mut data = vec![0; reader.output_buffer_size().expect("fits in memory")];
     let info = reader.next_frame(&mut data).expect("a picture");
     let dpm = reader.info().pixel_dims.map(|d| d.xppu);
@@ -306,17 +286,9 @@ fn png_has_the_size_and_resolution_asked_for_and_is_not_blank() {
     // 85 mm and 60 mm at 300 dots per 25.4 mm.
     assert_eq!((width, height), (1004, 709));
     assert_eq!(per_metre, Some(11811));
-    let dark = data
-        .chunks_exact(3)
-        .filter(|p| p.iter().all(|c| *c < 100))
-        .count();
+    let dark = data.chunks_exact(3).filter(|p| p.iter().all(|c| *c < 100)).count();
     assert!(dark > 5000, "{dark} dark pixels");
-    assert!(
-        data.chunks_exact(3)
-            .filter(|p| **p == [255, 255, 255])
-            .count()
-            > 400_000
-    );
+    assert!(data.chunks_exact(3).filter(|p| **p == [255, 255, 255]).count() > 400_000);
 }
 
 #[test]
@@ -330,10 +302,7 @@ fn impossible_sizes_are_errors() {
 #[test]
 fn a_million_points_make_a_small_file() {
     let x: Vec<f64> = (0..1_000_000).map(f64::from).collect();
-    let y: Vec<f64> = x
-        .iter()
-        .map(|x| (x * 0.37).sin() * (x / 1e5).cos())
-        .collect();
+    let y: Vec<f64> = x.iter().map(|x| (x * 0.37).sin() * (x / 1e5).cos()).collect();
     let line = Figure::single_column(60.0)
         .panel(Chart::new("n", "y").with(Series::line("", &x, &y)))
         .svg_outlined();

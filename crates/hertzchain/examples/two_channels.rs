@@ -66,9 +66,7 @@ fn shots(text: &str, under: &Path) -> Result<Vec<Evaluated>, Box<dyn Error>> {
 /// How many shots, and the median of measured less true times, with its error.
 fn off_ns(shots: &[Evaluated], case: &str, time: usize) -> Option<(usize, String)> {
     let own = shots.iter().filter(|shot| shot.case == case);
-    let off: Vec<f64> = own
-        .filter_map(|shot| Some(1e9 * shot.error(time)?.value))
-        .collect();
+    let off: Vec<f64> = own.filter_map(|shot| Some(1e9 * shot.error(time)?.value)).collect();
     let middle = median(&off)?;
     let apart: Vec<f64> = off.iter().map(|one| (one - middle).abs()).collect();
     // Of a median: √(π/2) of that of a mean, the spread robust.

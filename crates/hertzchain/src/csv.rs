@@ -110,9 +110,7 @@ pub fn square(names: &[&str], value: impl Fn(usize, usize) -> Option<f64>) -> Cs
     let titles = std::iter::once("name").chain(names.iter().copied());
     let line = |(i, name): (usize, &&str)| {
         let values = (0..names.len()).map(|j| Cell::from(value(i, j)));
-        std::iter::once(Cell::from(*name))
-            .chain(values)
-            .collect::<Vec<_>>()
+        std::iter::once(Cell::from(*name)).chain(values).collect::<Vec<_>>()
     };
     Csv::new(titles).with_all(names.iter().enumerate(), line)
 }

@@ -60,21 +60,14 @@ fn usual_speeds(speeds: &[f64]) -> Vec<f64> {
 /// # Errors
 /// A parameter that is not free.
 pub fn targets(problem: &CurveProblem, arguments: &Arguments) -> Result<Vec<usize>, Failure> {
-    let names: Vec<&str> = problem
-        .parameters()
-        .iter()
-        .map(|p| p.name.as_str())
-        .collect();
+    let names: Vec<&str> = problem.parameters().iter().map(|p| p.name.as_str()).collect();
     if arguments.target.is_empty() {
         return Ok((0..names.len()).collect());
     }
     let place = |target: &String| {
         let at = names.iter().position(|name| name == target);
         at.ok_or_else(|| {
-            Failure::User(format!(
-                "--target {target} is not free; free are {}",
-                names.join(", ")
-            ))
+            Failure::User(format!("--target {target} is not free; free are {}", names.join(", ")))
         })
     };
     arguments.target.iter().map(place).collect()
@@ -121,9 +114,7 @@ pub fn run_design(
     let fit = fit(problem, &Fitting::default()).map_err(user)?;
     let ways = ways(problem.model().experiment(), &choices(arguments)).map_err(user)?;
     let errors = ExpectedErrors::like(problem.data());
-    let candidates = problem
-        .candidates(&fit, &ways, speeds, &errors)
-        .map_err(user)?;
+    let candidates = problem.candidates(&fit, &ways, speeds, &errors).map_err(user)?;
     let picks = arguments.picks.0;
     let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
     let aims = found.aims.iter().enumerate();
@@ -166,9 +157,7 @@ impl DesignResult {
         });
         let mut reported: Vec<String> = open.collect();
         let names = self.design.not_identifiable.iter();
-        let names: Vec<&str> = names
-            .map(|k| problem.parameters()[*k].name.as_str())
-            .collect();
+        let names: Vec<&str> = names.map(|k| problem.parameters()[*k].name.as_str()).collect();
         if !names.is_empty() {
             let which = match names[..] {
                 [one] => one.to_owned(),
@@ -251,7 +240,5 @@ fn now(run_design: &DesignResult) -> String {
     };
     let named = run_design.names.iter().zip(&run_design.units);
     let lines = named.zip(&run_design.design.before);
-    Csv::new(["name", "unit", "standard_error"])
-        .with_all(lines, line)
-        .text()
+    Csv::new(["name", "unit", "standard_error"]).with_all(lines, line).text()
 }

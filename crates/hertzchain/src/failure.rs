@@ -141,9 +141,7 @@ fn fits(finding: &Finding) -> bool {
 
 /// Message, expectation and advice, without a place.
 fn placeless(finding: &Finding) -> String {
-    let help = finding
-        .help()
-        .map_or(String::new(), |help| format!(" ({help})"));
+    let help = finding.help().map_or(String::new(), |help| format!(" ({help})"));
     format!("{finding}: {}{help}", finding.label())
 }
 

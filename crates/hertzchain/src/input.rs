@@ -47,12 +47,9 @@ fn open_file(file: &Path) -> Result<Experiment, Failure> {
     Experiment::open(file).map_err(|error| match error {
         OpenError::Mistakes(mistakes) => mistakes.into(),
         OpenError::Unreadable { .. } => {
-            let meant = file
-                .to_str()
-                .filter(|name| !file.exists() && preset(name).is_ok());
-            let hint = meant.map_or(String::new(), |name| {
-                format!("; did you mean --preset {name}?")
-            });
+            let meant = file.to_str().filter(|name| !file.exists() && preset(name).is_ok());
+            let hint =
+                meant.map_or(String::new(), |name| format!("; did you mean --preset {name}?"));
             Failure::User(format!("{error}{hint}"))
         }
     })
@@ -126,12 +123,10 @@ pub fn adjust(how: &How, plan: &mut Plan) {
         (Some(Solver::Adaptive), _) => study::Solver::Adaptive,
         (Some(Solver::Rk4), _) => study::Solver::Rk4 { step_s: step },
         (Some(Solver::Verlet), _) => study::Solver::Verlet { step_s: step },
-        (None, study::Solver::Rk4 { step_s }) => study::Solver::Rk4 {
-            step_s: step.or(step_s),
-        },
-        (None, study::Solver::Verlet { step_s }) => study::Solver::Verlet {
-            step_s: step.or(step_s),
-        },
+        (None, study::Solver::Rk4 { step_s }) => study::Solver::Rk4 { step_s: step.or(step_s) },
+        (None, study::Solver::Verlet { step_s }) => {
+            study::Solver::Verlet { step_s: step.or(step_s) }
+        }
         (None, study::Solver::Adaptive) => study::Solver::Adaptive,
     };
 }
@@ -144,11 +139,7 @@ pub fn check_effort(how: &How, plan: &Plan, units: Units) -> Result<(), Failure>
         ));
     }
     let longest_s = System::new(&plan.chain).map_or(f64::INFINITY, |it| longest_duration_s(&it));
-    match how
-        .duration
-        .as_ref()
-        .filter(|given| given.value() > longest_s)
-    {
+    match how.duration.as_ref().filter(|given| given.value() > longest_s) {
         Some(given) => Err(Failure::User(format!(
             "--duration {}: expected at most {}: contacts take some ten steps each, and a billion steps take hours",
             given.text(),

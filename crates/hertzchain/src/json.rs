@@ -21,10 +21,7 @@ struct Peak {
 
 impl From<&Maximum> for Peak {
     fn from(maximum: &Maximum) -> Self {
-        Self {
-            time_s: maximum.time_s,
-            value: maximum.value,
-        }
+        Self { time_s: maximum.time_s, value: maximum.value }
     }
 }
 
@@ -181,9 +178,8 @@ fn others<S: Serializer>(others: &&[Competing], serializer: S) -> Result<S::Ok, 
 
 fn budget(budget: &Budget) -> Json {
     let lines = budget.dissipated.iter();
-    let dissipated: serde_json::Map<String, Json> = lines
-        .map(|line| (line.law.to_owned(), json!(line.energy_j)))
-        .collect();
+    let dissipated: serde_json::Map<String, Json> =
+        lines.map(|line| (line.law.to_owned(), json!(line.energy_j))).collect();
     json!({
         "time_s": budget.time_s,
         "start_j": budget.start_j,
@@ -227,12 +223,7 @@ impl<'a> SweepView<'a> {
         let through = laws.each_ref().map(|(law, least)| (law, least.clone()));
         let mut outline = outline(experiment, calibration, through);
         outline["error_control"] = json!(result.error_control);
-        Self {
-            outline,
-            points,
-            units: experiment.units(),
-            plan,
-        }
+        Self { outline, points, units: experiment.units(), plan }
     }
 }
 
@@ -251,12 +242,7 @@ struct Points<'a>(&'a SweepView<'a>);
 
 impl Serialize for Points<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let SweepView {
-            points,
-            units,
-            plan,
-            ..
-        } = self.0;
+        let SweepView { points, units, plan, .. } = self.0;
         serializer.collect_seq(points.iter().map(|it| point(it, *units, plan)))
     }
 }
@@ -278,10 +264,7 @@ pub fn outline(
 }
 
 /// A power law, and what accuracies alone leave open of it.
-pub type Through<'a> = (
-    &'a Result<PowerLaw, FitError>,
-    Result<Uncertainty, FitError>,
-);
+pub type Through<'a> = (&'a Result<PowerLaw, FitError>, Result<Uncertainty, FitError>);
 
 /// What stands in the place of the energy budget in a sweep.
 const NO_BUDGET: &str =
@@ -298,15 +281,10 @@ enum PointView<'a> {
 fn point<'a>(point: &'a BatchShot, units: Units, plan: &Plan) -> PointView<'a> {
     let speed_m_s = point.speed_m_s;
     match &point.shot {
-        Err(error) => PointView::Failed {
-            speed_m_s,
-            error: error.to_string(),
-        },
+        Err(error) => PointView::Failed { speed_m_s, error: error.to_string() },
         Ok(shot) => {
             let view = ShotView::of(shot, units, plan);
-            let energy = view
-                .energy
-                .or_else(|| Some(json!({ "missing": NO_BUDGET })));
+            let energy = view.energy.or_else(|| Some(json!({ "missing": NO_BUDGET })));
             PointView::Shot(Box::new(ShotView {
                 speed_m_s: Some(speed_m_s),
                 warnings: Some(&point.warnings),

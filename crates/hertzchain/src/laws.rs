@@ -24,10 +24,7 @@ pub fn json(infos: &[&LawInfo]) -> Json {
 
 fn unknown(name: &str) -> Failure {
     let names: Vec<&str> = LAWS.iter().map(|row| row.info.name).collect();
-    Failure::User(format!(
-        "there is no law `{name}`; expected one of: {}",
-        names.join(", ")
-    ))
+    Failure::User(format!("there is no law `{name}`; expected one of: {}", names.join(", ")))
 }
 
 /// What a law does with energy, in a word.

@@ -75,11 +75,7 @@ impl Style {
 /// Decimals that give a number of this size so many significant digits.
 #[must_use]
 pub fn decimals(size: f64, digits: usize) -> usize {
-    let whole = if size > 0.0 && size.is_finite() {
-        size.log10().floor() as i32 + 1
-    } else {
-        1
-    };
+    let whole = if size > 0.0 && size.is_finite() { size.log10().floor() as i32 + 1 } else { 1 };
     usize::try_from(digits as i32 - whole).unwrap_or(0).min(15)
 }
 

@@ -12,22 +12,10 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("infer", &["chain", "experiment", "measure", "sim"]),
     ("explore", &["chain", "experiment", "measure", "sim"]),
     ("figures", &[]),
-    (
-        "paper",
-        &["chain", "experiment", "figures", "measure", "sim"],
-    ),
+    ("paper", &["chain", "experiment", "figures", "measure", "sim"]),
     (
         "hertzchain",
-        &[
-            "chain",
-            "experiment",
-            "explore",
-            "figures",
-            "infer",
-            "measure",
-            "paper",
-            "sim",
-        ],
+        &["chain", "experiment", "explore", "figures", "infer", "measure", "paper", "sim"],
     ),
     ("py", &["chain", "experiment", "infer", "measure", "sim"]),
 ];
@@ -44,9 +32,7 @@ fn crates_depend_on_each_other_only_along_the_arrows() {
         let name = folder.file_name().into_string().unwrap();
         let (_, allowed) = arrows(&name).unwrap();
         let manifest = read_to_string(folder.path().join("Cargo.toml")).unwrap();
-        let ours = manifest
-            .lines()
-            .filter_map(|line| line.strip_prefix("hertzchain-"));
+        let ours = manifest.lines().filter_map(|line| line.strip_prefix("hertzchain-"));
         for dependency in ours.map(|rest| rest.split(['.', ' ']).next().unwrap()) {
             assert!(allowed.contains(&dependency), "{name} -> {dependency}");
         }

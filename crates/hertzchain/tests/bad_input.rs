@@ -49,10 +49,7 @@ fn is_report(line: &str) -> bool {
 fn a_second_table_is_one_report_that_underlines_both() {
     let twice = "\n[track]\nincline = \"1 deg\"\n".repeat(2);
     let message = one_report("twice.toml", format!("{DRY}{twice}"));
-    assert!(
-        message.contains("`[track]` stands here a second time"),
-        "{message}"
-    );
+    assert!(message.contains("`[track]` stands here a second time"), "{message}");
     assert!(message.contains("the first one is here"), "{message}");
     assert_eq!(message.matches("┬").count(), 2, "{message}");
 }
@@ -61,15 +58,9 @@ fn a_second_table_is_one_report_that_underlines_both() {
 fn overlapping_sections_are_one_report_that_underlines_both() {
     let sections = "[[contacts]]\nto = 9\nlaws = [\"elastic_hertz\"]\n[[contacts]]\nfrom = 5\n";
     let message = one_report("overlap.toml", DRY.replacen("[[contacts]]\n", sections, 1));
-    assert!(
-        message.contains("contacts 5 to 9 belong to two sections"),
-        "{message}"
-    );
+    assert!(message.contains("contacts 5 to 9 belong to two sections"), "{message}");
     assert_eq!(message.matches("┬").count(), 2, "{message}");
-    assert!(
-        message.contains("help: end the first section with `to = 4`"),
-        "{message}"
-    );
+    assert!(message.contains("help: end the first section with `to = 4`"), "{message}");
 }
 
 #[test]
@@ -86,10 +77,7 @@ fn a_warning_is_underlined_like_a_mistake_and_ends_well() {
         let message = reported(&output);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {message}");
         for part in ["⚠ the Poisson ratio", "warned.toml:14:17", "┬", "above 1/2"] {
-            assert!(
-                message.contains(part),
-                "{arguments:?}: {message} lacks {part}"
-            );
+            assert!(message.contains(part), "{arguments:?}: {message} lacks {part}");
         }
     }
 }
@@ -102,20 +90,14 @@ fn what_the_physics_refuses_is_underlined_by_every_verb() {
     for verb in ["check", "theory", "shot", "sweep"] {
         let message = refused(&[verb, path.to_str().unwrap()]);
         assert!(message.contains("laws = ["), "{verb}: {message}");
-        assert!(
-            message.contains("add \"elastic_hertz\""),
-            "{verb}: {message}"
-        );
+        assert!(message.contains("add \"elastic_hertz\""), "{verb}: {message}");
     }
 }
 
 #[test]
 fn numbers_that_no_body_has_are_underlined() {
     let message = one_report("soft.toml", DRY.replace("= \"213 GPa", "= \"1e-300 Pa"));
-    assert!(
-        message.contains("young_modulus = \"1e-300 Pa\""),
-        "{message}"
-    );
+    assert!(message.contains("young_modulus = \"1e-300 Pa\""), "{message}");
     assert!(message.contains("from 1 Pa to 1e21 Pa"), "{message}");
 }
 
@@ -127,10 +109,7 @@ fn a_sweep_without_a_striker_points_at_what_is_there_instead() {
     let path = path.to_str().unwrap();
     for arguments in [&["sweep", path][..], &["shot", path, "--speed", "1"]] {
         let message = refused(arguments);
-        assert!(
-            message.contains("[[initial]]") && message.contains("─"),
-            "{message}"
-        );
+        assert!(message.contains("[[initial]]") && message.contains("─"), "{message}");
         assert!(message.contains("put a [striker]"), "{message}");
     }
 }
@@ -140,10 +119,7 @@ fn an_output_folder_that_is_a_file_is_called_one() {
     let path = file("in-the-way", "keep me");
     for verb in ["shot", "sweep", "reproduce", "man"] {
         let message = refused(&[verb, "--out", path.to_str().unwrap()]);
-        assert!(
-            message.contains("it is a file; --out names a folder"),
-            "{message}"
-        );
+        assert!(message.contains("it is a file; --out names a folder"), "{message}");
     }
     assert_eq!(fs::read_to_string(path).unwrap(), "keep me");
     // A device is no folder either.
@@ -167,22 +143,14 @@ fn a_dimensionless_experiment_takes_plain_numbers_only() {
         &["sweep", path, "--speeds", "log:0.1 m/s:1:3"],
     ] {
         let message = refused(arguments);
-        assert!(
-            message.contains("dimensionless; expected a plain number"),
-            "{message}"
-        );
+        assert!(message.contains("dimensionless; expected a plain number"), "{message}");
     }
     for arguments in [
         &["shot", path, "--speed", "2", "--duration", "5"][..],
         &["sweep", path, "--speeds", "log:0.5:2:3"],
     ] {
         let output = run(arguments);
-        assert_eq!(
-            output.status.code(),
-            Some(0),
-            "{arguments:?}: {}",
-            reported(&output)
-        );
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", reported(&output));
     }
 }
 
@@ -197,10 +165,7 @@ fn times_of_an_si_experiment_have_units_and_plain_speeds_are_in_metres_a_second(
         assert!(message.contains("has no unit"), "{message}");
     }
     let endless = refused(&["shot", "--duration", "1e9 s"]);
-    assert!(
-        endless.contains("expected at most") && endless.contains("billion"),
-        "{endless}"
-    );
+    assert!(endless.contains("expected at most") && endless.contains("billion"), "{endless}");
     let comma = refused(&["shot", "--duration", "0,002 s"]);
     assert!(comma.contains("write 0.002 s; expected a time"), "{comma}");
     let of =
@@ -208,18 +173,12 @@ fn times_of_an_si_experiment_have_units_and_plain_speeds_are_in_metres_a_second(
     assert!(!of("0.5").is_empty());
     assert_eq!(of("0.5"), of("500 mm/s"));
     let help = run(&["shot", "--help"]).stdout;
-    assert!(
-        String::from_utf8(help)
-            .unwrap()
-            .contains("a plain number is in m/s")
-    );
+    assert!(String::from_utf8(help).unwrap().contains("a plain number is in m/s"));
 }
 
 #[test]
 fn hundreds_of_mistakes_are_told_twenty_at_a_time() {
-    let gaps: String = (0..500)
-        .map(|i| format!("\n[[gaps]]\ncontact = {i}\ngap = 1\n"))
-        .collect();
+    let gaps: String = (0..500).map(|i| format!("\n[[gaps]]\ncontact = {i}\ngap = 1\n")).collect();
     let path = file("many.toml", format!("{DRY}{gaps}"));
     let output = run(&["check", path.to_str().unwrap()]);
     let message = reported(&output);
@@ -235,10 +194,7 @@ fn endless_lines_are_told_in_one() {
     let deep = format!("a{} = 1\n", ".a".repeat(50_000));
     for (name, text) in [
         ("key.toml", format!("{DRY}\n{key} = 1\n")),
-        (
-            "unit.toml",
-            DRY.replace("= \"6.35 mm", &format!("= \"6 {unit}")),
-        ),
+        ("unit.toml", DRY.replace("= \"6.35 mm", &format!("= \"6 {unit}"))),
         ("deep.toml", deep),
     ] {
         let message = one_report(name, text);
@@ -249,9 +205,8 @@ fn endless_lines_are_told_in_one() {
 
 #[test]
 fn what_is_no_text_is_said_to_be_none() {
-    let wide: Vec<u8> = (std::iter::once(0xFEFF).chain(DRY.encode_utf16()))
-        .flat_map(u16::to_le_bytes)
-        .collect();
+    let wide: Vec<u8> =
+        (std::iter::once(0xFEFF).chain(DRY.encode_utf16())).flat_map(u16::to_le_bytes).collect();
     assert!(one_report("wide.toml", wide).contains("UTF-16"));
     assert!(one_report("empty.toml", "").contains("hertzchain presets dry"));
     assert!(one_report("zero.toml", b"a = 1\0").contains("zero bytes"));

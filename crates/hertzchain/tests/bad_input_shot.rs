@@ -78,26 +78,15 @@ fn numbers_with_which_nothing_moves_are_underlined() {
             "cubic.toml",
             "77 kg s/m^2",
             "1e20 kg s/m^2",
-            [
-                "law `damping_cubic` is 7e16 times as strong",
-                "1400 kg s/m^2",
-            ],
+            ["law `damping_cubic` is 7e16 times as strong", "1400 kg s/m^2"],
         ),
         (
             "viscous.toml",
             "3.2e4 Pa s",
             "1e24 Pa s",
-            [
-                "law `damping_viscoelastic` is 1.1e18 times as strong",
-                "viscosities",
-            ],
+            ["law `damping_viscoelastic` is 1.1e18 times as strong", "viscosities"],
         ),
-        (
-            "fast.toml",
-            "0.5 m/s",
-            "1e5 m/s",
-            ["overlap by", "more than a bead's radius"],
-        ),
+        ("fast.toml", "0.5 m/s", "1e5 m/s", ["overlap by", "more than a bead's radius"]),
     ] {
         every_verb_refuses(name, &DRY.replace(from, to), to, &words);
     }
@@ -118,12 +107,8 @@ fn a_law_out_of_its_range_is_a_warning_beside_the_results() {
         let output = run(&[verb, path]);
         let message = reported(&output);
         assert_eq!(output.status.code(), Some(0), "{verb}: {message}");
-        for part in [
-            "⚠ two bodies",
-            "speed = \"60 m/s\"",
-            "of their reduced radius",
-            "validity",
-        ] {
+        for part in ["⚠ two bodies", "speed = \"60 m/s\"", "of their reduced radius", "validity"]
+        {
             assert!(message.contains(part), "{verb}: {message} lacks {part}");
         }
     }
@@ -134,15 +119,7 @@ fn a_solver_that_does_not_get_there_is_told_where_it_was_chosen() {
     let solver = "\n[solver]\nmethod = \"rk4\"\naccuracy = 1e-13\n";
     let path = file("slow.toml", &format!("{DRY}{solver}"));
     let chosen_in_file = run(&["shot", path.to_str().unwrap()]);
-    let line = [
-        "shot",
-        "--preset",
-        "dry",
-        "--solver",
-        "rk4",
-        "--accuracy",
-        "1e-13",
-    ];
+    let line = ["shot", "--preset", "dry", "--solver", "rk4", "--accuracy", "1e-13"];
     let chosen_on_the_line = run(&line);
     for (output, place) in [(chosen_in_file, true), (chosen_on_the_line, false)] {
         assert_eq!(output.status.code(), Some(2));
@@ -156,10 +133,7 @@ fn a_solver_that_does_not_get_there_is_told_where_it_was_chosen() {
 fn a_speed_of_the_command_line_is_refused_there_and_not_in_the_file() {
     for verb in ["check", "theory", "shot"] {
         for (speed, words) in [
-            (
-                "1e9",
-                "expected a positive, finite speed, from 1e-12 m/s to 1e6 m/s",
-            ),
+            ("1e9", "expected a positive, finite speed, from 1e-12 m/s to 1e6 m/s"),
             ("1e5 m/s", "more than a bead's radius"),
         ] {
             let output = run(&[verb, "--preset", "dry", "--speed", speed]);
@@ -173,14 +147,8 @@ fn a_speed_of_the_command_line_is_refused_there_and_not_in_the_file() {
         let output = run(&[verb, "--preset", "hertz", "--speed", "60"]);
         let message = reported(&output);
         assert_eq!(output.status.code(), Some(0), "{verb}: {message}");
-        assert!(
-            message.contains("warning: --speed 60: two bodies"),
-            "{verb}: {message}"
-        );
+        assert!(message.contains("warning: --speed 60: two bodies"), "{verb}: {message}");
     }
     let message = reported(&run(&["sweep", "-p", "dry", "--speeds", "1e9"]));
-    assert!(
-        message.contains("no shot at 1e9 m/s: a shot at"),
-        "{message}"
-    );
+    assert!(message.contains("no shot at 1e9 m/s: a shot at"), "{message}");
 }

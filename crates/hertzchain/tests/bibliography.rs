@@ -24,16 +24,12 @@ fn root() -> PathBuf {
 fn texts(path: &Path) -> Vec<String> {
     if path.is_dir() {
         let entries = read_dir(path).unwrap();
-        return entries
-            .flat_map(|entry| texts(&entry.unwrap().path()))
-            .collect();
+        return entries.flat_map(|entry| texts(&entry.unwrap().path())).collect();
     }
     let kinds = ["rs", "md", "toml", "py"];
     let kind = path.extension().and_then(|kind| kind.to_str());
     let read = kind.is_some_and(|kind| kinds.contains(&kind)) && !path.ends_with("bibliography.rs");
-    read.then(|| read_to_string(path).unwrap())
-        .into_iter()
-        .collect()
+    read.then(|| read_to_string(path).unwrap()).into_iter().collect()
 }
 
 /// Names and a year: `Nesterenko1983`.
@@ -46,18 +42,13 @@ fn is_key(word: &str) -> bool {
         && names.starts_with(|letter: char| letter.is_ascii_uppercase())
         && names.chars().all(|letter| letter.is_ascii_alphabetic())
         && year.len() == 4
-        && ["18", "19", "20"]
-            .iter()
-            .any(|century| year.starts_with(century))
+        && ["18", "19", "20"].iter().any(|century| year.starts_with(century))
 }
 
 /// Keys that are cited: in brackets, several separated by commas, or as text
 /// of their own in quotes.
 fn cited() -> BTreeSet<String> {
-    let texts: Vec<String> = CITING
-        .iter()
-        .flat_map(|path| texts(&root().join(path)))
-        .collect();
+    let texts: Vec<String> = CITING.iter().flat_map(|path| texts(&root().join(path))).collect();
     let pieces = texts.iter().flat_map(|text| text.split(['[', ']', '"']));
     let words = pieces.flat_map(|piece| piece.split([',', ';']));
     words

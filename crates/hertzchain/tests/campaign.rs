@@ -35,9 +35,7 @@ impl Scratch {
 
     fn command(&self, out: &str, more: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
-        command
-            .current_dir(&self.0)
-            .args(["campaign", "small.toml", "--out", out]);
+        command.current_dir(&self.0).args(["campaign", "small.toml", "--out", out]);
         command.args(more);
         command
     }
@@ -48,11 +46,7 @@ impl Scratch {
 
     fn done(&self, out: &str, more: &[&str]) -> String {
         let output = self.run(out, more);
-        assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8(output.stdout).unwrap()
     }
 
@@ -86,10 +80,8 @@ fn moment(seed: u64, attempt: u64, longest: Duration) -> Duration {
 fn a_campaign_killed_many_times_ends_with_the_bytes_of_one_that_was_not() {
     let scratch = Scratch::new("killed");
     let reported = std::env::var("HERTZCHAIN_KILL_SEED").ok();
-    let seed = reported.map_or_else(
-        || RandomState::new().hash_one("moments"),
-        |seed| seed.parse().unwrap(),
-    );
+    let seed = reported
+        .map_or_else(|| RandomState::new().hash_one("moments"), |seed| seed.parse().unwrap());
     println!("seed of the moments: HERTZCHAIN_KILL_SEED={seed}");
     let begun = Instant::now();
     scratch.done("whole", &["--threads", "2"]);
@@ -100,11 +92,7 @@ fn a_campaign_killed_many_times_ends_with_the_bytes_of_one_that_was_not() {
     let mut killed = 0;
     for attempt in 0..12 {
         let mut command = scratch.command("broken", &["--threads", "2"]);
-        let mut child = command
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         std::thread::sleep(moment(seed, attempt, longest));
         child.kill().unwrap();
         killed += usize::from(!child.wait().unwrap().success());
@@ -115,10 +103,7 @@ fn a_campaign_killed_many_times_ends_with_the_bytes_of_one_that_was_not() {
             }
         }
     }
-    assert!(
-        killed >= 3,
-        "only {killed} runs were killed before their end"
-    );
+    assert!(killed >= 3, "only {killed} runs were killed before their end");
     scratch.done("broken", &[]);
     let mut broken = scratch.files("broken");
     broken.retain(|name, _| whole.contains_key(name));
@@ -153,18 +138,7 @@ fn progress_without_a_terminal_tells_rate_and_time_left_every_tenth() {
     let mut last = 0.0;
     for line in text.lines() {
         let words: Vec<&str> = line.split(' ').collect();
-        let [
-            fired,
-            "of",
-            "32",
-            "shots,",
-            rate,
-            "a",
-            "second,",
-            left,
-            "s",
-            "left",
-        ] = words[..]
+        let [fired, "of", "32", "shots,", rate, "a", "second,", left, "s", "left"] = words[..]
         else {
             panic!("{line}");
         };
@@ -216,10 +190,7 @@ fn measured(scratch: &Scratch, out: &str) -> Vec<(f64, f64)> {
     let shots = found["shots"].as_array().unwrap().iter();
     let tof = |shot: &serde_json::Value| {
         let tof = &shot["tof_incident_s"];
-        (
-            tof["value"].as_f64().unwrap(),
-            tof["sigma"].as_f64().unwrap(),
-        )
+        (tof["value"].as_f64().unwrap(), tof["sigma"].as_f64().unwrap())
     };
     shots.map(tof).collect()
 }
@@ -228,10 +199,8 @@ fn measured(scratch: &Scratch, out: &str) -> Vec<(f64, f64)> {
 fn measure_reads_separate_channels_as_it_reads_the_summed_one() {
     let scratch = Scratch::new("separate");
     scratch.done("summed", &["--shard", "1/4"]);
-    let separate = small().replace(
-        "[campaign.recorder]",
-        "[campaign.recorder]\nchannels = \"separate\"",
-    );
+    let separate =
+        small().replace("[campaign.recorder]", "[campaign.recorder]\nchannels = \"separate\"");
     fs::write(scratch.0.join("small.toml"), separate).unwrap();
     scratch.done("separate", &["--shard", "1/4"]);
     let (one, two) = (measured(&scratch, "summed"), measured(&scratch, "separate"));
@@ -277,10 +246,7 @@ fn a_record_too_short_is_warned_of_and_a_rate_without_pulses_refused() {
     let short = scratch.run("short", &[]);
     assert!(short.status.success());
     let reported = String::from_utf8_lossy(&short.stderr);
-    assert!(
-        reported.contains("warning: case `dry` at 0.1000 m/s: the record ends"),
-        "{reported}"
-    );
+    assert!(reported.contains("warning: case `dry` at 0.1000 m/s: the record ends"), "{reported}");
     with("sampling = \"500 kHz\"", "sampling = \"1 kHz\"");
     let slow = scratch.run("slow", &[]);
     assert_eq!(slow.status.code(), Some(2));
@@ -323,10 +289,7 @@ fn mistakes_of_the_command_line_are_told_with_exit_code_2() {
     let refused = scratch.run("out", &[]);
     let text = String::from_utf8_lossy(&refused.stderr);
     assert!(text.contains("from 0.05 to 2.5 m/s"), "{text}");
-    let none = Command::new(env!("CARGO_BIN_EXE_hertzchain"))
-        .arg("campaign")
-        .output()
-        .unwrap();
+    let none = Command::new(env!("CARGO_BIN_EXE_hertzchain")).arg("campaign").output().unwrap();
     assert!(String::from_utf8_lossy(&none.stderr).contains("--preset paper"));
 }
 

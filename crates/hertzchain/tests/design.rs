@@ -7,9 +7,7 @@ use serde_json::Value;
 fn a_design_ranks_what_to_measure() {
     let folder = folder("design");
     let data = curve(&folder, "dry");
-    let design = [
-        "design", &data, "-p", "dry", "--free", "eta,B", "--target", "B", "--json",
-    ];
+    let design = ["design", &data, "-p", "dry", "--free", "eta,B", "--target", "B", "--json"];
     let found = json(&with_errors(&design));
     let now = found["standard_errors_now"][0].as_f64().unwrap();
     let ranked = found["ranked"].as_array().unwrap();
@@ -20,13 +18,8 @@ fn a_design_ranks_what_to_measure() {
         assert!(nats(&pair[0]) + 1e-3 >= nats(&pair[1]));
     }
     assert!(ranked[0]["standard_errors"][0].as_f64().unwrap() < now);
-    let message = refused(&with_errors(&[
-        "design", &data, "--free", "eta", "--target", "B",
-    ]));
-    assert!(
-        message.contains("--target B is not free; free are eta"),
-        "{message}"
-    );
+    let message = refused(&with_errors(&["design", &data, "--free", "eta", "--target", "B"]));
+    assert!(message.contains("--target B is not free; free are eta"), "{message}");
     let fast = ["design", &data, "--free", "eta", "--speeds", "0.1,500"];
     assert!(refused(&with_errors(&fast)).contains("it looks like mm/s"));
     // Errors of what the data leave open are not reported as if they meant something.
@@ -39,10 +32,7 @@ fn a_design_ranks_what_to_measure() {
     let names = serde_json::json!(["combination 1", "combination 2"]);
     assert_eq!(found["parameters"], names);
     let reported = found["hopeless"].to_string();
-    for words in [
-        "nu up 1.00 % with",
-        "So none of Y, nu, eta can be tightened by itself",
-    ] {
+    for words in ["nu up 1.00 % with", "So none of Y, nu, eta can be tightened by itself"] {
         assert!(reported.contains(words), "{words}: {reported}");
     }
     // A start from where no minimum is found determines nothing.
@@ -57,9 +47,7 @@ fn a_ranking_by_a_model_that_the_data_do_not_follow_is_told_to_be_worth_no_more(
     let data = curve(&folder, "dry");
     let ranked = |eta: &str| {
         let eta = format!("shear_viscosity={eta} Pa s");
-        let design = [
-            "design", &data, "-p", "dry", "--free", "B", "--speeds", "0.5",
-        ];
+        let design = ["design", &data, "-p", "dry", "--free", "B", "--speeds", "0.5"];
         let design = with_errors(&[&design[..], &["--set", &eta]].concat());
         let text = String::from_utf8(run(&design).stdout).unwrap();
         (text, json(&[&design[..], &["--json"]].concat()))
@@ -69,9 +57,6 @@ fn a_ranking_by_a_model_that_the_data_do_not_follow_is_told_to_be_worth_no_more(
     assert!(text.starts_with("Now: B"), "{text}");
     assert_eq!(found["follows_data"], true);
     let (text, found) = ranked("1e4");
-    assert!(
-        text.starts_with("warning: the model does not follow the data"),
-        "{text}"
-    );
+    assert!(text.starts_with("warning: the model does not follow the data"), "{text}");
     assert_eq!(found["follows_data"], false);
 }

@@ -19,9 +19,7 @@ fn printed(arguments: &[&str], set: &str) -> String {
 /// Names after `available here` in the long version.
 fn available() -> Vec<String> {
     let version = printed(&["--version", "--verbose"], "");
-    let line = version
-        .lines()
-        .find(|line| line.starts_with("available here"));
+    let line = version.lines().find(|line| line.starts_with("available here"));
     let names = line.unwrap().trim_start_matches("available here").trim();
     names.split(", ").map(str::to_owned).collect()
 }
@@ -31,15 +29,9 @@ fn the_version_tells_the_instruction_set_in_use_and_those_to_choose_from() {
     let sets = available();
     for set in &sets {
         let version = printed(&["--version", "--verbose"], set);
-        assert!(
-            version.contains(&format!("instruction set  {set}\n")),
-            "{version}"
-        );
+        assert!(version.contains(&format!("instruction set  {set}\n")), "{version}");
     }
-    assert_eq!(
-        printed(&["--version"], ""),
-        format!("hertzchain {}\n", env!("CARGO_PKG_VERSION"))
-    );
+    assert_eq!(printed(&["--version"], ""), format!("hertzchain {}\n", env!("CARGO_PKG_VERSION")));
 }
 
 #[test]
@@ -47,25 +39,14 @@ fn an_instruction_set_that_is_not_there_is_a_users_mistake() {
     let output = run(&["sweep", "--preset", "hertz", "--speeds", "0.5,1"], "mmx");
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{errors}");
-    for word in [
-        "HERTZCHAIN_INSTRUCTION_SET",
-        "`mmx`",
-        available()[0].as_str(),
-    ] {
+    for word in ["HERTZCHAIN_INSTRUCTION_SET", "`mmx`", available()[0].as_str()] {
         assert!(errors.contains(word), "{word} in {errors}");
     }
 }
 
 #[test]
 fn every_instruction_set_gives_the_same_times_of_flight_to_rounding() {
-    let arguments = [
-        "sweep",
-        "--preset",
-        "dry",
-        "--speeds",
-        "0.1,0.5,1.2",
-        "--json",
-    ];
+    let arguments = ["sweep", "--preset", "dry", "--speeds", "0.1,0.5,1.2", "--json"];
     let times = |set: &str| -> Vec<f64> {
         let json: Value = serde_json::from_str(&printed(&arguments, set)).unwrap();
         let points = json["points"].as_array().unwrap().clone();

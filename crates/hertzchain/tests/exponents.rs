@@ -7,39 +7,20 @@ const EXPONENT: &str = "contacts[1].laws.elastic_power.exponent";
 #[test]
 fn an_exponent_can_be_free_alone_and_the_report_says_what_the_stiffness_then_is() {
     let data = curve(&folder("exponent-free"), "exponent-section");
-    let fit = [
-        "fit",
-        &data,
-        "-p",
-        "exponent-section",
-        "--free",
-        "exponent",
-        "--start",
-        "exponent=1.97",
-    ];
+    let fit =
+        ["fit", &data, "-p", "exponent-section", "--free", "exponent", "--start", "exponent=1.97"];
     let found = json(&with_errors(&[&fit[..], &["--json"]].concat()));
     let exponent = &found["parameters"][0];
     let value = exponent["value"].as_f64().unwrap();
     // The curve's own exponent, within a standard error: it has no noise.
     let error = exponent["standard_error"].as_f64().unwrap();
-    assert!(
-        (value - 2.0).abs() < error && error < 1e-3,
-        "{value} {error}"
-    );
+    assert!((value - 2.0).abs() < error && error < 1e-3, "{value} {error}");
     assert_eq!(exponent["lower"], 1.0);
     let reported = String::from_utf8(run(&with_errors(&fit)).stderr).unwrap();
-    for words in [
-        "is free and",
-        "its number 2.5e12 is kept",
-        "N/m^2",
-        "overlap of 1 m",
-    ] {
+    for words in ["is free and", "its number 2.5e12 is kept", "N/m^2", "overlap of 1 m"] {
         assert!(reported.contains(words), "{words}: {reported}");
     }
-    assert!(
-        reported.contains(found["kept"][0].as_str().unwrap()),
-        "{reported}"
-    );
+    assert!(reported.contains(found["kept"][0].as_str().unwrap()), "{reported}");
 }
 
 #[test]
@@ -56,21 +37,9 @@ fn an_exponent_can_be_set_alone() {
     assert_eq!(found["parameters"][0]["start"], 2.5e12);
     assert_eq!(found["kept"].as_array().unwrap().len(), 0);
     // With nothing else said of the stiffness it is kept, and reported.
-    let other = [
-        "fit",
-        &data,
-        "-p",
-        "exponent-section",
-        "--set",
-        "exponent=1.9",
-        "--free",
-        "Y",
-    ];
+    let other = ["fit", &data, "-p", "exponent-section", "--set", "exponent=1.9", "--free", "Y"];
     let reported = String::from_utf8(run(&with_errors(&other)).stderr).unwrap();
-    assert!(
-        reported.contains("is set and") && reported.contains("now N/m^1.9"),
-        "{reported}"
-    );
+    assert!(reported.contains("is set and") && reported.contains("now N/m^1.9"), "{reported}");
 }
 
 #[test]
@@ -80,11 +49,7 @@ fn a_rival_can_have_a_free_exponent() {
     let model = String::from_utf8(run(&["presets", "hertz-viscoelastic"]).stdout).unwrap();
     // The same contacts by a law whose exponent is a number of the file.
     let law = "{ law = \"elastic_power\", stiffness = \"8.7926303796e9 N/m^1.5\", exponent = 1.5 }";
-    let power = file(
-        &folder,
-        "pow.toml",
-        &model.replace("\"elastic_hertz\"", law),
-    );
+    let power = file(&folder, "pow.toml", &model.replace("\"elastic_hertz\"", law));
     let against = format!("{power}=exponent,eta");
     let fit = [
         "fit",
@@ -103,10 +68,7 @@ fn a_rival_can_have_a_free_exponent() {
     let exponent = alternative["point"][0].as_f64().unwrap();
     assert!((exponent - 1.5).abs() < 1e-3, "{found}");
     assert!(
-        alternative["kept"][0]
-            .as_str()
-            .unwrap()
-            .contains(&EXPONENT.replace('1', "0")),
+        alternative["kept"][0].as_str().unwrap().contains(&EXPONENT.replace('1', "0")),
         "{alternative}"
     );
 }

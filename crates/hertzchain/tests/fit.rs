@@ -9,9 +9,8 @@ fn a_swept_curve_gives_its_own_numbers_back_and_files_beside() {
     let data = curve(&folder, "dry");
     let out = folder.join("out");
     let out = out.to_str().unwrap();
-    let fit = [
-        "fit", &data, "-p", "dry", "--free", "eta,B", "--start", "eta=2e4", "--json", "-o", out,
-    ];
+    let fit =
+        ["fit", &data, "-p", "dry", "--free", "eta,B", "--start", "eta=2e4", "--json", "-o", out];
     let found = json(&with_errors(&fit));
     for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {
         let parameter = &found["parameters"][at];
@@ -20,14 +19,9 @@ fn a_swept_curve_gives_its_own_numbers_back_and_files_beside() {
         // No noise, so only the solver's errors, far below the data's.
         assert!((value - exact).abs() < 0.1 * sd, "{parameter}");
     }
-    for name in [
-        "fit.json",
-        "fit.csv",
-        "parameters.csv",
-        "fit.svg",
-        "fit.png",
-        "singular-values.png",
-    ] {
+    for name in
+        ["fit.json", "fit.csv", "parameters.csv", "fit.svg", "fit.png", "singular-values.png"]
+    {
         assert!(Path::new(out).join(name).exists(), "{name}");
     }
     // One thread or two: the same bits.
@@ -39,16 +33,11 @@ fn a_swept_curve_gives_its_own_numbers_back_and_files_beside() {
 fn profiles_and_other_models_are_told_in_words() {
     let folder = folder("words");
     let data = curve(&folder, "dry");
-    let fit = [
-        "fit", &data, "-p", "dry", "--free", "eta,B", "--method", "profile",
-    ];
+    let fit = ["fit", &data, "-p", "dry", "--free", "eta,B", "--method", "profile"];
     let against = ["--against", "hertz-viscoelastic=eta"];
     let output = run(&with_errors(&[&fit[..], &against].concat()));
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(
-        text.contains("by profile") && text.contains("is rejected"),
-        "{text}"
-    );
+    assert!(text.contains("by profile") && text.contains("is rejected"), "{text}");
     let three = ["fit", &data, "-p", "dry", "--free", "Y,nu,eta,B"];
     let text = String::from_utf8(run(&with_errors(&three)).stdout).unwrap();
     assert!(text.contains("determine 3 of 4 combinations"), "{text}");
@@ -63,10 +52,7 @@ fn profiles_and_other_models_are_told_in_words() {
     assert!(text.contains("B    77"), "{text}");
     let found = json(&with_errors(&[&three[..], &["--json"]].concat()));
     let determined = |at: usize| found["parameters"][at]["determined"].as_bool();
-    assert_eq!(
-        [0, 1, 2, 3].map(determined),
-        [false, false, false, true].map(Some)
-    );
+    assert_eq!([0, 1, 2, 3].map(determined), [false, false, false, true].map(Some));
     assert!(found["parameters"][0]["standard_error"].is_null());
 }
 
@@ -75,11 +61,7 @@ fn a_posterior_of_too_many_parameters_says_before_it_begins_that_it_takes_its_ti
     let folder = folder("many");
     let out = folder.join("swept");
     let sweep = ["sweep", "-p", "dry", "--speeds", "log:0.1:1.2:19", "--out"];
-    assert!(
-        run(&[&sweep[..], &[out.to_str().unwrap()]].concat())
-            .status
-            .success()
-    );
+    assert!(run(&[&sweep[..], &[out.to_str().unwrap()]].concat()).status.success());
     let data = out.join("sweep.csv");
     let posterior = [
         "fit",
@@ -105,9 +87,8 @@ fn a_posterior_of_too_many_parameters_says_before_it_begins_that_it_takes_its_ti
 fn a_bound_that_binds_is_no_error_bar() {
     let folder = folder("bound");
     let data = curve(&folder, "dry");
-    let fit = [
-        "fit", &data, "-p", "dry", "--free", "eta,B", "--bounds", "B=80:200", "--start", "B=90",
-    ];
+    let fit =
+        ["fit", &data, "-p", "dry", "--free", "eta,B", "--bounds", "B=80:200", "--start", "B=90"];
     let text = String::from_utf8(run(&with_errors(&fit)).stdout).unwrap();
     assert!(text.contains("80 kg s/m^2, at its bound"), "{text}");
 }

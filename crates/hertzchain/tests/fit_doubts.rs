@@ -14,33 +14,17 @@ fn a_model_that_does_not_follow_the_data_is_told_and_ranked() {
     let folder = folder("misfit");
     let data = curve(&folder, "dry");
     // Without the cubic term no viscosity gives these times.
-    let misfit = [
-        "fit",
-        &data,
-        "-p",
-        "hertz-viscoelastic",
-        "--free",
-        "eta",
-        "--against",
-        "dry=eta,B",
-    ];
+    let misfit =
+        ["fit", &data, "-p", "hertz-viscoelastic", "--free", "eta", "--against", "dry=eta,B"];
     let found = json(&with_errors(&[&misfit[..], &["--json"]].concat()));
     assert_eq!(found["follows_data"], false);
     let models = found["comparison"]["models"].as_array().unwrap();
     assert_eq!(models.len(), 2);
     let aicc = |at: usize| models[at]["aicc"].as_f64().unwrap();
-    assert!(
-        models[0]["model"]
-            .as_str()
-            .unwrap()
-            .starts_with("hertz-viscoelastic")
-    );
+    assert!(models[0]["model"].as_str().unwrap().starts_with("hertz-viscoelastic"));
     assert!(aicc(0) > aicc(1) + 100.0, "{models:?}");
     let [text, _] = reported(&with_errors(&misfit));
-    assert!(
-        text.contains("warning: the model does not follow the data"),
-        "{text}"
-    );
+    assert!(text.contains("warning: the model does not follow the data"), "{text}");
     // The better one stands above the fit's own.
     let place = |model: &str| text.rfind(model).unwrap();
     let table = text.find("AICc above best").unwrap();
@@ -50,10 +34,7 @@ fn a_model_that_does_not_follow_the_data_is_told_and_ranked() {
     assert!(place("is rejected") > table, "{text}");
     // What follows the data is not doubted.
     let fit = ["fit", &data, "-p", "dry", "--free", "eta,B"];
-    assert_eq!(
-        json(&with_errors(&[&fit[..], &["--json"]].concat()))["follows_data"],
-        true
-    );
+    assert_eq!(json(&with_errors(&[&fit[..], &["--json"]].concat()))["follows_data"], true);
     let [text, _] = reported(&with_errors(&fit));
     assert!(!text.contains("warning"), "{text}");
 }
@@ -69,19 +50,9 @@ fn a_young_modulus_beside_a_stiffness_of_its_own_acts_through_the_relaxation_tim
         warnings.contains("acts through the relaxation time A alone")
     };
     assert!(warned(&["--free", "Y,K"]));
-    assert!(warned(&[
-        "--free",
-        "Y",
-        "--set",
-        "elastic_hertz.stiffness=8.8e9 N/m^1.5"
-    ]));
+    assert!(warned(&["--free", "Y", "--set", "elastic_hertz.stiffness=8.8e9 N/m^1.5"]));
     assert!(!warned(&["--free", "Y,eta"]));
-    assert!(!warned(&[
-        "--free",
-        "eta",
-        "--set",
-        "elastic_hertz.stiffness=8.8e9 N/m^1.5"
-    ]));
+    assert!(!warned(&["--free", "eta", "--set", "elastic_hertz.stiffness=8.8e9 N/m^1.5"]));
 }
 
 #[test]
@@ -89,20 +60,14 @@ fn priors_that_are_none_are_told_with_what_is_expected() {
     let folder = folder("priors");
     let data = curve(&folder, "dry");
     for (prior, words) in [
-        (
-            "eta=3e4",
-            "--prior eta=3e4: expected MEAN+-SD, or MEDIAN*/FACTOR",
-        ),
+        ("eta=3e4", "--prior eta=3e4: expected MEAN+-SD, or MEDIAN*/FACTOR"),
         ("eta=3e4*/0.9", "expected a factor above 1 after */"),
         ("eta=fast+-1", "--prior eta=fast+-1:"),
         (
             "eta=1e3+-0",
             "eta: a prior 1000 ± 0 is no distribution; widths and medians must be positive",
         ),
-        (
-            "eta=-3e4*/1.1",
-            "eta: a prior -30000 times or over 1.1 is no distribution",
-        ),
+        ("eta=-3e4*/1.1", "eta: a prior -30000 times or over 1.1 is no distribution"),
         (
             "eta=3.1e4+-100",
             "eta starts at 32000, 10.0 standard deviations from the middle of its prior",
@@ -130,65 +95,22 @@ fn no_number_is_told_with_digits_that_no_user_gave() {
     let fit = ["fit", &data, "-p", "dry", "--free"];
     let mut texts = Vec::new();
     for more in [
-        &[
-            "eta,incline",
-            "--start",
-            "incline=0.5deg",
-            "--bounds",
-            "incline=0.7deg:0.9deg",
-        ][..],
+        &["eta,incline", "--start", "incline=0.5deg", "--bounds", "incline=0.7deg:0.9deg"][..],
         &["eta,incline", "--bounds", "incline=0.9deg:0.7deg"],
         &["eta", "--prior", "eta=0*/1.1"],
         &["eta", "--prior", "eta=0.1kPa s+-0"],
-        &[
-            "eta",
-            "--start",
-            "eta=32.1 kPa s",
-            "--prior",
-            "eta=30.1 kPa s+-0.1 kPa s",
-        ],
+        &["eta", "--start", "eta=32.1 kPa s", "--prior", "eta=30.1 kPa s+-0.1 kPa s"],
         &["nu", "--start", "nu=0.3", "--scale", "nu=-0.1"],
     ] {
         texts.push(refused(&with_errors(&[&fit[..], more].concat())));
     }
     let softer = String::from_utf8(run(&["presets", "dry"]).stdout).unwrap();
-    let softer = file(
-        &folder,
-        "softer.toml",
-        &softer.replace("\"213 GPa\"", "\"75.8641 GPa\""),
-    );
-    let whole = [
-        &fit[..],
-        &[
-            "eta,B",
-            "--method",
-            "profile",
-            "--set",
-            "young_modulus=213.1GPa",
-        ],
-    ];
+    let softer = file(&folder, "softer.toml", &softer.replace("\"213 GPa\"", "\"75.8641 GPa\""));
+    let whole = [&fit[..], &["eta,B", "--method", "profile", "--set", "young_modulus=213.1GPa"]];
     texts.extend(reported(&with_errors(&whole.concat())));
-    let other = [
-        "fit",
-        &data,
-        "-m",
-        &softer,
-        "--free",
-        "Y,eta",
-        "--start",
-        "Y=210.1GPa",
-    ];
+    let other = ["fit", &data, "-m", &softer, "--free", "Y,eta", "--start", "Y=210.1GPa"];
     texts.extend(reported(&with_errors(&other)));
-    let design = [
-        "design",
-        &data,
-        "-p",
-        "dry",
-        "--free",
-        "eta,B",
-        "--preloads",
-        "0.3N",
-    ];
+    let design = ["design", &data, "-p", "dry", "--free", "eta,B", "--preloads", "0.3N"];
     texts.extend(reported(&with_errors(&design)));
     for text in &texts {
         // Times of flight to their errors have eight; a ten-digit number below 1, twelve.
@@ -205,13 +127,7 @@ fn a_fit_with_as_many_numbers_as_parameters_reports_no_degrees_of_freedom() {
     let data = file(&folder, "one.csv", rows);
     let fit = ["fit", &data, "-p", "hertz-viscoelastic", "--free", "K,A"];
     let [text, _] = reported(&fit);
-    assert!(
-        text.contains("ν = 0: as many numbers as parameters"),
-        "{text}"
-    );
-    assert!(
-        !text.contains("runs") && !text.contains("largest residual"),
-        "{text}"
-    );
+    assert!(text.contains("ν = 0: as many numbers as parameters"), "{text}");
+    assert!(!text.contains("runs") && !text.contains("largest residual"), "{text}");
     assert!(json(&[&fit[..], &["--json"]].concat())["runs"].is_null());
 }

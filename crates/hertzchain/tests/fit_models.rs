@@ -44,16 +44,10 @@ fn a_gauge_states_both_models_that_are_not_named_and_a_campaign_wants_one() {
     let gauge = with_errors(&["gauge", &data, "--dry", &data, "--use", "incident"]);
     let report = text(&gauge);
     let first = report.lines().next().unwrap();
-    assert!(
-        first.contains("(preset pump") && first.contains("(preset dry"),
-        "{first}"
-    );
+    assert!(first.contains("(preset pump") && first.contains("(preset dry"), "{first}");
     let wet = text(&[&gauge[..], &["-p", "pump"]].concat());
     let first = wet.lines().next().unwrap();
-    assert!(
-        !first.contains("(preset pump") && first.contains("(preset dry"),
-        "{first}"
-    );
+    assert!(!first.contains("(preset pump") && first.contains("(preset dry"), "{first}");
     let out = folder.join("records");
     let why = refused(&["campaign", "--out", out.to_str().unwrap()]);
     assert!(why.contains("Name an experiment file"), "{why}");
@@ -71,14 +65,7 @@ fn a_fit_of_k_and_a_names_their_contact() {
     let folder = folder("reference");
     let row = file(&folder, "row.toml", UNLIKE);
     let out = folder.join("swept");
-    let swept = run(&[
-        "sweep",
-        &row,
-        "--speeds",
-        "log:0.1:1:6",
-        "-o",
-        out.to_str().unwrap(),
-    ]);
+    let swept = run(&["sweep", &row, "--speeds", "log:0.1:1:6", "-o", out.to_str().unwrap()]);
     assert!(swept.status.success());
     let data = out.join("sweep.csv").to_str().unwrap().to_owned();
     let fit = ["fit", &data, "-m", &row, "--free", "K,A"];
@@ -89,10 +76,7 @@ fn a_fit_of_k_and_a_names_their_contact() {
     }
     let found = json(&with_errors(&[&fit[..], &["--json"]].concat()));
     let reference = &found["references"][0];
-    assert_eq!(
-        (&reference["name"], &reference["contact"]),
-        (&"K".into(), &1.into())
-    );
+    assert_eq!((&reference["name"], &reference["contact"]), (&"K".into(), &1.into()));
     // The last bead's radius of 4 mm at the plane, over 4 · 5/9 mm between beads.
     let most = reference["ratios"][1].as_f64().unwrap();
     assert!((most - 1.8_f64.sqrt()).abs() < 1e-12, "{most}");
@@ -103,16 +87,7 @@ fn a_fit_of_k_and_a_names_their_contact() {
 fn of_models_that_do_not_follow_the_data_none_is_favoured() {
     let folder = folder("bad-models");
     let data = curve(&folder, "dry");
-    let fit = [
-        "fit",
-        &data,
-        "-p",
-        "hertz",
-        "--free",
-        "Y",
-        "--against",
-        "hertz-viscoelastic=eta",
-    ];
+    let fit = ["fit", &data, "-p", "hertz", "--free", "Y", "--against", "hertz-viscoelastic=eta"];
     let report = text(&with_errors(&fit));
     assert!(
         report.contains("None of these models follows the data, and none is favoured"),

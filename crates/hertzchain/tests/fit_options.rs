@@ -39,15 +39,9 @@ fn options_of_a_results_json_give_the_same_bits_again() {
     let data = inference::data(Path::new(&data), &options.measured).unwrap();
     let dry = inference::experiment(&options.modelled, None).unwrap();
     let again = hertzchain::fit(&data, &dry, &options).unwrap();
-    assert_eq!(
-        fit::json(&again, &options)["parameters"],
-        found["parameters"]
-    );
+    assert_eq!(fit::json(&again, &options)["parameters"], found["parameters"]);
     // Without one of them it is another fit.
-    let other = FitOptions {
-        modelled: ModelOptions::default(),
-        ..options
-    };
+    let other = FitOptions { modelled: ModelOptions::default(), ..options };
     let dry = inference::experiment(&other.modelled, None).unwrap();
     let other = hertzchain::fit(&data, &dry, &other).unwrap();
     assert_ne!(other.inferred.fit.point, again.inferred.fit.point);
@@ -57,19 +51,10 @@ fn options_of_a_results_json_give_the_same_bits_again() {
 fn rivals_know_what_is_set_and_known_in_the_fits_own_model() {
     let folder = folder("rivals");
     let softer = run(&["presets", "dry"]).stdout;
-    let softer = String::from_utf8(softer)
-        .unwrap()
-        .replace("\"213 GPa\"", "\"200 GPa\"");
+    let softer = String::from_utf8(softer).unwrap().replace("\"213 GPa\"", "\"200 GPa\"");
     let softer = file(&folder, "softer.toml", &softer);
     let out = folder.join("swept");
-    let sweep = [
-        "sweep",
-        &softer,
-        "--speeds",
-        "log:0.1:1.2:6",
-        "--out",
-        out.to_str().unwrap(),
-    ];
+    let sweep = ["sweep", &softer, "--speeds", "log:0.1:1.2:6", "--out", out.to_str().unwrap()];
     assert!(run(&sweep).status.success());
     let data = out.join("sweep.csv");
     // The same model by two names of its numbers: nothing may distinguish them.
@@ -118,10 +103,7 @@ fn rivals_know_what_is_set_and_known_in_the_fits_own_model() {
     ];
     let found = json(&with_errors(&fit));
     let left_out = &found["comparison"]["models"][1]["settings_left_out"];
-    assert_eq!(
-        left_out[0], "damping_cubic.coefficient=60 kg s/m^2",
-        "{found:#}"
-    );
+    assert_eq!(left_out[0], "damping_cubic.coefficient=60 kg s/m^2", "{found:#}");
 }
 
 #[test]
@@ -131,15 +113,9 @@ fn options_that_would_say_nothing_are_refused_at_once() {
     let fit = ["fit", &data, "-p", "dry", "--free", "eta"];
     let nowhere = folder.join("nowhere").to_str().unwrap().to_owned();
     for (options, words) in [
-        (
-            &["--robust", "--against", "hertz=Y"][..],
-            "a robust loss is none",
-        ),
+        (&["--robust", "--against", "hertz=Y"][..], "a robust loss is none"),
         (&["--rate", "1MHz"], "--rate is for recordings"),
-        (
-            &["--resume", "--out", &nowhere],
-            "holds nothing of one: leave it out",
-        ),
+        (&["--resume", "--out", &nowhere], "holds nothing of one: leave it out"),
     ] {
         let message = refused(&with_errors(&[&fit[..], options].concat()));
         assert!(message.contains(words), "{options:?}: {message}");
@@ -147,16 +123,7 @@ fn options_that_would_say_nothing_are_refused_at_once() {
     let rig = file(&folder, "rig.toml", &compact());
     let silent: String = (0..3000).map(|n| format!("{n}e-6,0\n")).collect();
     let silent = file(&folder, "silent.csv", &format!("time_s,volts\n{silent}"));
-    let fit = [
-        "fit",
-        &silent,
-        "-m",
-        &rig,
-        "--case",
-        "dry",
-        "--free",
-        "steel.eta",
-    ];
+    let fit = ["fit", &silent, "-m", &rig, "--case", "dry", "--free", "steel.eta"];
     let message = refused(&[&fit[..], &["--against", "hertz=Y"]].concat());
     assert!(message.contains("DATA are recordings"), "{message}");
 }
@@ -168,12 +135,7 @@ fn proposed(arguments: &[&str]) -> Vec<(String, f64, f64, f64)> {
     let reported = |one: &Value| {
         let number = |key: &str| one[key].as_f64().unwrap();
         let name = one["measure"].as_str().unwrap().to_owned();
-        (
-            name,
-            number("cost"),
-            number("information_nats"),
-            number("information_over_cost"),
-        )
+        (name, number("cost"), number("information_nats"), number("information_over_cost"))
     };
     ranked.map(reported).collect()
 }
@@ -182,33 +144,17 @@ fn proposed(arguments: &[&str]) -> Vec<(String, f64, f64, f64)> {
 fn pushes_sensors_and_costs_of_a_design_are_options() {
     let folder = folder("ways");
     let data = curve(&folder, "dry");
-    let design = [
-        "design", &data, "-p", "dry", "--free", "eta,B", "--speeds", "0.3,0.8", "--json",
-    ];
+    let design = ["design", &data, "-p", "dry", "--free", "eta,B", "--speeds", "0.3,0.8", "--json"];
     let usual = proposed(&design);
     let has =
         |all: &[(String, f64, f64, f64)], words: &str| all.iter().any(|one| one.0.contains(words));
-    for words in [
-        "pushed with 0.24 N",
-        "sensor in bead 5",
-        "sensor in bead 20",
-        "sensor in bead 30",
-    ] {
+    for words in
+        ["pushed with 0.24 N", "sensor in bead 5", "sensor in bead 20", "sensor in bead 30"]
+    {
         assert!(has(&usual, words), "{words}");
     }
-    assert!(
-        usual
-            .iter()
-            .all(|(_, cost, information, over)| *cost == 1.0 && information == over)
-    );
-    let options = [
-        "--preloads",
-        "0.1N,0.5",
-        "--sensors",
-        "10",
-        "--costs",
-        "sensor=4,preload=0.5",
-    ];
+    assert!(usual.iter().all(|(_, cost, information, over)| *cost == 1.0 && information == over));
+    let options = ["--preloads", "0.1N,0.5", "--sensors", "10", "--costs", "sensor=4,preload=0.5"];
     let other = proposed(&[&design[..], &options].concat());
     assert!(has(&other, "pushed with 0.1 N") && has(&other, "pushed with 0.5 N"));
     assert!(has(&other, "sensor in bead 10"));

@@ -74,16 +74,9 @@ fn scratch(name: &str) -> PathBuf {
 fn pictures(name: &str, arguments: &[&str]) -> Vec<(String, String)> {
     let out = scratch(name);
     hertzchain(arguments, &out);
-    let files = fs::read_dir(&out)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
+    let files = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path());
     let drawn = files.filter(|path| path.extension().is_some_and(|e| e == "svg"));
-    let read = drawn.map(|path| {
-        (
-            path.display().to_string(),
-            fs::read_to_string(path).unwrap(),
-        )
-    });
+    let read = drawn.map(|path| (path.display().to_string(), fs::read_to_string(path).unwrap()));
     let all = read.collect();
     fs::remove_dir_all(&out).unwrap();
     all

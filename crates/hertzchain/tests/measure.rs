@@ -83,26 +83,17 @@ fn one_command_gives_a_time_of_flight_from_a_file_of_volts() {
 fn speeds_from_a_table_give_curves_power_laws_and_ratios() {
     let folder = folder("curves");
     shots(&folder);
-    let output = measure(
-        &folder,
-        &[".", "--shots", "list.txt", "--json", "--out", "out"],
-    );
+    let output = measure(&folder, &[".", "--shots", "list.txt", "--json", "--out", "out"]);
     // The table of shots lies in the same folder and is no recording.
     assert_eq!(output.status.code(), Some(0));
     let all = json(&output);
     let law = &all["cases"][0]["power_law_incident"];
     // As above, over a factor 5 in speed.
-    assert!(
-        (law["exponent"].as_f64().unwrap() + 0.2).abs() < 2e-4,
-        "{law}"
-    );
+    assert!((law["exponent"].as_f64().unwrap() + 0.2).abs() < 2e-4, "{law}");
     let ratios = all["ratios"][0]["incident"].as_array().unwrap();
     assert_eq!(ratios.len(), 3);
     for ratio in ratios {
-        assert!(
-            (ratio["ratio"].as_f64().unwrap() - 0.98).abs() < 3e-4,
-            "{ratio}"
-        );
+        assert!((ratio["ratio"].as_f64().unwrap() - 0.98).abs() < 3e-4, "{ratio}");
     }
     for name in [
         "shots.csv",
@@ -138,10 +129,7 @@ fn a_bad_record_is_told_and_the_good_ones_are_measured() {
 #[test]
 fn a_file_without_a_rate_asks_for_it_and_takes_it() {
     let folder = folder("rate");
-    let column: String = volts(0.5, 1.0)
-        .iter()
-        .map(|v| format!("{v:.6}\n"))
-        .collect();
+    let column: String = volts(0.5, 1.0).iter().map(|v| format!("{v:.6}\n")).collect();
     fs::write(folder.join("column.txt"), column).unwrap();
     let asked = measure(&folder, &["column.txt"]);
     assert!(String::from_utf8_lossy(&asked.stderr).contains("--rate"));
@@ -156,9 +144,7 @@ fn times_of_few_digits_are_told_once_and_a_rate_ends_it() {
         let rows = volts(0.5, 1.0).into_iter().enumerate();
         // No sample at a tie of rounding, which would determine more.
         let time_s = |i: usize| (i as f64 - 400.0) * 1e-6 + 0.3e-6;
-        let rows: String = rows
-            .map(|(i, v)| format!("{:.5},{v:.6}\n", time_s(i)))
-            .collect();
+        let rows: String = rows.map(|(i, v)| format!("{:.5},{v:.6}\n", time_s(i))).collect();
         fs::write(folder.join(name), format!("Time (s),Volts\n{rows}")).unwrap();
     }
     let reported = |more: &[&str]| {
@@ -167,11 +153,7 @@ fn times_of_few_digits_are_told_once_and_a_rate_ends_it() {
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
     let open = reported(&[]);
-    assert_eq!(
-        open.matches("times are even only to 10 µs").count(),
-        1,
-        "{open}"
-    );
+    assert_eq!(open.matches("times are even only to 10 µs").count(), 1, "{open}");
     assert!(open.contains("--rate"), "{open}");
     assert_eq!(reported(&["--rate", "1MHz", "--low-pass", "0"]), "");
 }
@@ -192,19 +174,10 @@ fn a_lost_passing_pulse_counts_in_no_mean() {
     let files = ["0.csv", "1.csv", "2.csv", "--shots", "list.txt", "--json"];
     let found = json(&measure(&folder, &files));
     let row = &found["cases"][0]["speeds"][0];
-    assert_eq!(
-        (&row["shots"], &row["left_out"]),
-        (&2.into(), &1.into()),
-        "{found}"
-    );
-    let named = json(&measure(
-        &folder,
-        &[&files[..], &["--beads", "40", "--sensor", "7"]].concat(),
-    ));
-    assert_eq!(
-        named["shots"][2]["flags"][0], "incident pulse missing",
-        "{named}"
-    );
+    assert_eq!((&row["shots"], &row["left_out"]), (&2.into(), &1.into()), "{found}");
+    let named =
+        json(&measure(&folder, &[&files[..], &["--beads", "40", "--sensor", "7"]].concat()));
+    assert_eq!(named["shots"][2]["flags"][0], "incident pulse missing", "{named}");
     assert!(named["shots"][2]["missing"].is_string());
 }
 
@@ -217,20 +190,14 @@ fn every_method_agrees_on_pulses_of_one_shape() {
         let found = &json(&output)["shots"][0]["tof_incident_s"]["value"];
         let found = found.as_f64().unwrap();
         // The ripple; onsets lie on the flank, where it counts as for tops.
-        assert!(
-            (found - 1e-6 * incident_us(0.5)).abs() < 1e-7,
-            "{method}: {found}"
-        );
+        assert!((found - 1e-6 * incident_us(0.5)).abs() < 1e-7, "{method}: {found}");
     }
 }
 
 /// Two columns, and what of them is reported on standard error.
 fn told_of_two_columns(folder: &Path, arguments: &[&str]) -> String {
     let rows = volts(0.5, 1.0);
-    let rows = rows
-        .iter()
-        .enumerate()
-        .map(|(i, v)| format!("{i},{v:.6}\n"));
+    let rows = rows.iter().enumerate().map(|(i, v)| format!("{i},{v:.6}\n"));
     let text = "t,sum\n".to_owned() + &rows.collect::<String>();
     fs::write(folder.join("two.csv"), text).unwrap();
     let output = measure(folder, &[&["two.csv"], arguments].concat());
@@ -256,42 +223,26 @@ fn a_time_without_a_unit_is_told_and_a_unit_can_be_given() {
 fn a_continuous_recording_is_cut_and_the_cut_is_told() {
     let folder = folder("continuous");
     let shot = volts(0.5, 1.0);
-    let all = [
-        shot.as_slice(),
-        &vec![0.0; 40_000],
-        &shot,
-        &vec![0.0; 40_000],
-    ]
-    .concat();
+    let all = [shot.as_slice(), &vec![0.0; 40_000], &shot, &vec![0.0; 40_000]].concat();
     write(&folder.join("long.csv"), &all);
     let output = measure(&folder, &["long.csv", "--json"]);
     assert_eq!(output.status.code(), Some(0));
     let all = json(&output);
     assert_eq!(all["shots"].as_array().unwrap().len(), 2);
-    assert!(
-        all["notes"][0]["note"]
-            .as_str()
-            .unwrap()
-            .contains("--whole")
-    );
+    assert!(all["notes"][0]["note"].as_str().unwrap().contains("--whole"));
     let level = measure(&folder, &["long.csv", "--level", "0.3", "--json"]);
     assert_eq!(json(&level)["shots"].as_array().unwrap().len(), 2);
     let never = measure(&folder, &["long.csv", "--level", "-7"]);
     let reported = String::from_utf8_lossy(&never.stderr).into_owned();
-    assert!(
-        reported.contains("never passes the level of -7 V"),
-        "{reported}"
-    );
+    assert!(reported.contains("never passes the level of -7 V"), "{reported}");
     assert_eq!(never.status.code(), Some(2));
 }
 
 #[test]
 fn three_channels_of_a_shot_are_one_too_many() {
     let folder = folder("three");
-    let reported = told_of_two_columns(
-        &folder,
-        &["--channel", "1", "--channel", "1", "--channel", "1"],
-    );
+    let reported =
+        told_of_two_columns(&folder, &["--channel", "1", "--channel", "1", "--channel", "1"]);
     assert!(reported.contains("at most two channels"), "{reported}");
 }
 
@@ -333,19 +284,13 @@ fn shots_that_are_the_same_have_no_spread_of_rounding() {
 fn an_odd_unit_of_times_is_named_and_not_called_absent() {
     let folder = folder("shakes");
     let rows = volts(0.5, 1.0);
-    let rows = rows
-        .iter()
-        .enumerate()
-        .map(|(i, v)| format!("{i},{v:.6}\n"));
+    let rows = rows.iter().enumerate().map(|(i, v)| format!("{i},{v:.6}\n"));
     let text = "Time (shakes),sum\n".to_owned() + &rows.collect::<String>();
     fs::write(folder.join("odd.csv"), text).unwrap();
     let refused = measure(&folder, &["odd.csv"]);
     let reported = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(2));
-    assert!(
-        reported.contains("shakes") && reported.contains("--time-unit"),
-        "{reported}"
-    );
+    assert!(reported.contains("shakes") && reported.contains("--time-unit"), "{reported}");
     let given = measure(&folder, &["odd.csv", "--time-unit", "us"]);
     assert_eq!(given.status.code(), Some(0));
 }
@@ -394,10 +339,7 @@ fn shots_and_speeds_without_times_are_told_counted_and_in_the_exit_code() {
     assert!(lost.starts_with("gear,5e-1,,0,2,,"), "{table}");
     let reported = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2));
-    assert!(
-        reported.contains("2 of 5") && reported.contains("no time of flight"),
-        "{reported}"
-    );
+    assert!(reported.contains("2 of 5") && reported.contains("no time of flight"), "{reported}");
 }
 
 /// Fits of shots at speeds whose errors are reported or not.
@@ -419,30 +361,16 @@ fn fits(folder: &Path, speeds: &[f64], error: &str) -> String {
 #[test]
 fn a_power_law_is_judged_by_errors_of_speeds_only_where_these_are_known() {
     let known = fits(&folder("known"), &[0.2, 0.5, 1.0], "1e-6");
-    assert!(
-        known.contains("NOT a power law within the errors"),
-        "{known}"
-    );
+    assert!(known.contains("NOT a power law within the errors"), "{known}");
     let unknown = fits(&folder("unknown"), &[0.2, 0.5, 1.0], "");
     assert!(!unknown.contains("NOT a power law"), "{unknown}");
-    assert!(
-        unknown.contains("`speed error`") && unknown.contains("taken for 0"),
-        "{unknown}"
-    );
-    for (name, csv, supported) in [
-        ("known", ",false", Value::Bool(false)),
-        ("unknown", ",unknown", Value::Null),
-    ] {
+    assert!(unknown.contains("`speed error`") && unknown.contains("taken for 0"), "{unknown}");
+    for (name, csv, supported) in
+        [("known", ",false", Value::Bool(false)), ("unknown", ",unknown", Value::Null)]
+    {
         let folder = folder(name);
-        fits(
-            &folder,
-            &[0.2, 0.5, 1.0],
-            if name == "known" { "1e-6" } else { "" },
-        );
-        let reported = measure(
-            &folder,
-            &[".", "--shots", "list.txt", "--json", "--out", "out"],
-        );
+        fits(&folder, &[0.2, 0.5, 1.0], if name == "known" { "1e-6" } else { "" });
+        let reported = measure(&folder, &[".", "--shots", "list.txt", "--json", "--out", "out"]);
         let law = &json(&reported)["cases"][0]["power_law_incident"];
         assert_eq!(law["supported"], supported, "{law}");
         let why = law["supported_unknown_because"].as_str();
@@ -474,11 +402,7 @@ fn a_low_pass_above_half_the_rate_is_told_once() {
     let output = measure(&folder, &[".", "--shots", "list.txt", "--smooth", "2MHz"]);
     assert_eq!(output.status.code(), Some(2));
     let reported = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(
-        reported.matches("half the sampling rate").count(),
-        1,
-        "{reported}"
-    );
+    assert_eq!(reported.matches("half the sampling rate").count(), 1, "{reported}");
     assert!(reported.contains("sampled at 1000000 Hz"), "{reported}");
     assert!(output.stdout.is_empty());
 }
@@ -503,18 +427,12 @@ fn a_measured_curve_is_fitted_in_memory_as_from_its_file() {
     let folder = folder("in-memory");
     shots(&folder);
     let list = folder.join("list.txt");
-    let options = MeasureOptions {
-        shots: Some(list.clone()),
-        ..MeasureOptions::default()
-    };
+    let options = MeasureOptions { shots: Some(list.clone()), ..MeasureOptions::default() };
     let measured = hertzchain::measure(std::slice::from_ref(&folder), &options).unwrap();
     let curve = measured.curve("dry").unwrap();
     let output = measure(&folder, &[".", "--shots", "list.txt", "--out", "out"]);
     assert_eq!(output.status.code(), Some(0));
-    let options = CurveOptions {
-        case: Some("dry".to_owned()),
-        ..CurveOptions::default()
-    };
+    let options = CurveOptions { case: Some("dry".to_owned()), ..CurveOptions::default() };
     let stored = inference::data(&folder.join("out/speeds.csv"), &options).unwrap();
     assert_eq!(curve.rows, stored.rows);
 }

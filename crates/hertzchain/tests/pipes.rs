@@ -30,17 +30,13 @@ fn a_table_from_standard_input_is_fitted_and_no_copy_of_it_stays() {
 fn an_interrupted_campaign_ends_with_a_message_and_130() {
     let out = folder("interrupted").join("records");
     let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
-    let program = program
-        .args(["campaign", "--preset", "paper", "--out"])
-        .arg(&out);
+    let program = program.args(["campaign", "--preset", "paper", "--out"]).arg(&out);
     let mut program = program.stderr(Stdio::piped()).spawn().unwrap();
     // The folder is made by the verb, so the handler is there; the preset takes minutes.
     while !out.exists() && program.try_wait().unwrap().is_none() {
         std::thread::yield_now();
     }
-    let sent = Command::new("kill")
-        .args(["-INT", &program.id().to_string()])
-        .status();
+    let sent = Command::new("kill").args(["-INT", &program.id().to_string()]).status();
     assert!(sent.unwrap().success());
     let done = program.wait_with_output().unwrap();
     let reported = String::from_utf8_lossy(&done.stderr);
@@ -64,8 +60,5 @@ fn a_shot_that_takes_minutes_is_announced_with_its_steps() {
     child.wait().unwrap();
     reported.unwrap();
     // 75 steps a bead, as shots of 40 to 4,000 beads take.
-    assert!(
-        first.starts_with("This shot takes about 1.5e6 steps"),
-        "{first}"
-    );
+    assert!(first.starts_with("This shot takes about 1.5e6 steps"), "{first}");
 }

@@ -51,9 +51,8 @@ fn folder(name: &str) -> PathBuf {
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -62,26 +61,15 @@ fn names(folder: &Path) -> Vec<String> {
 fn a_shot_prints_its_times_of_flight() {
     let text = good(&["shot", "--preset", "hertz", "--speed", "1 m/s"]);
     // The reference's digits, rounded to the accuracy reached.
-    assert!(
-        text.contains("630.8416 µs") && text.contains("632.2657 µs"),
-        "{text}"
-    );
-    for word in [
-        "rebound",
-        "striker",
-        "residual",
-        "wide at half maximum",
-        "beads/s",
-    ] {
+    assert!(text.contains("630.8416 µs") && text.contains("632.2657 µs"), "{text}");
+    for word in ["rebound", "striker", "residual", "wide at half maximum", "beads/s"] {
         assert!(word == "rebound" || text.contains(word), "{word} in {text}");
     }
 }
 
 #[test]
 fn a_shot_as_json_has_the_reference_times() {
-    let shot = json(&[
-        "shot", "-p", "dry", "-s", "1.23", "-a", "1e-9", "--json", "--check",
-    ]);
+    let shot = json(&["shot", "-p", "dry", "-s", "1.23", "-a", "1e-9", "--json", "--check"]);
     let close = |key: &str, expected: f64| {
         let found = shot[key].as_f64().unwrap();
         // Half a unit of the reference's last digit is 1e-9 of it.
@@ -108,10 +96,7 @@ fn every_preset_and_example_can_be_shot_and_checked() {
         // The accuracy asked by default, 1e-6, holds for the energy too.
         let residual = shot["energy"]["relative_residual"].as_f64().unwrap();
         assert!(residual.abs() < 1e-6, "{name}: {residual:e}");
-        assert!(
-            good(&["check", "--preset", name]).contains("number of beads"),
-            "{name}"
-        );
+        assert!(good(&["check", "--preset", name]).contains("number of beads"), "{name}");
         let _ = good(&["theory", "--preset", name]);
     }
 }
@@ -123,10 +108,7 @@ fn a_preset_printed_and_opened_again_is_the_same_experiment() {
     fs::write(&file, good(&["presets", "motor"])).unwrap();
     let path = file.to_str().unwrap();
     let of = |arguments: &[&str]| json(arguments)["tof_incident_s"].clone();
-    assert_eq!(
-        of(&["shot", path, "--json"]),
-        of(&["shot", "-p", "motor", "--json"])
-    );
+    assert_eq!(of(&["shot", path, "--json"]), of(&["shot", "-p", "motor", "--json"]));
 }
 
 #[test]
@@ -150,33 +132,16 @@ fn a_shot_writes_traces_figures_arrays_and_a_moving_picture() {
     ];
     assert_eq!(names(&out), expected);
     let traces = fs::read_to_string(out.join("traces.csv")).unwrap();
-    assert!(
-        traces.starts_with("time_s,sensor_bead_7_n,wall_n"),
-        "{}",
-        &traces[..80]
-    );
+    assert!(traces.starts_with("time_s,sensor_bead_7_n,wall_n"), "{}", &traces[..80]);
     assert!(traces.lines().count() > 1000);
-    assert!(
-        fs::read(out.join("position_m.npy"))
-            .unwrap()
-            .starts_with(b"\x93NUMPY")
-    );
+    assert!(fs::read(out.join("position_m.npy")).unwrap().starts_with(b"\x93NUMPY"));
     let page = fs::read_to_string(out.join("animation.html")).unwrap();
     assert!(page.contains("</html>") && !page.contains("src=\"http"));
 }
 
 #[test]
 fn a_sweep_prints_the_power_law_of_hertz() {
-    let swept = json(&[
-        "sweep",
-        "-p",
-        "hertz",
-        "--speeds",
-        "log:0.1:1:5",
-        "-a",
-        "1e-10",
-        "--json",
-    ]);
+    let swept = json(&["sweep", "-p", "hertz", "--speeds", "log:0.1:1:5", "-a", "1e-10", "--json"]);
     let exponent = swept["power_law_incident"]["exponent"].as_f64().unwrap();
     // Ten times the accuracy asked of each time, over a decade in speed.
     assert!((exponent + 0.2).abs() < 1e-9, "{exponent}");
@@ -188,16 +153,7 @@ fn a_sweep_prints_the_power_law_of_hertz() {
 #[test]
 fn a_sweep_gives_the_same_bytes_on_one_and_on_two_threads() {
     let with = |threads: &str| {
-        let speeds = [
-            "sweep",
-            "-p",
-            "gear",
-            "--speeds",
-            "0.1:1:6",
-            "--json",
-            "--threads",
-            threads,
-        ];
+        let speeds = ["sweep", "-p", "gear", "--speeds", "0.1:1:6", "--json", "--threads", threads];
         good(&speeds)
     };
     assert_eq!(with("1"), with("2"));
@@ -217,17 +173,9 @@ fn a_sweep_writes_its_table_and_figure() {
 fn check_prints_what_follows_from_the_paper_s_numbers() {
     let text = good(&["check", "--preset", "dry"]);
     // K and A of the paper's balls, to six digits.
-    assert!(
-        text.contains("8.79263e9 N/m^(3/2)") && text.contains("338.529 ns"),
-        "{text}"
-    );
+    assert!(text.contains("8.79263e9 N/m^(3/2)") && text.contains("338.529 ns"), "{text}");
     let loaded = good(&["check", "--preset", "precompressed"]);
-    for word in [
-        "static overlap",
-        "sound speed",
-        "cutoff frequency",
-        "recommended step",
-    ] {
+    for word in ["static overlap", "sound speed", "cutoff frequency", "recommended step"] {
         assert!(loaded.contains(word), "{word} in {loaded}");
     }
 }
@@ -259,18 +207,10 @@ fn laws_print_the_work_that_each_is_from() {
         let source = &law["source"];
         assert!(law["reference"].is_string(), "{law}");
         assert!(source["authors"][0].is_string(), "{law}");
-        assert!(
-            source["title"].is_string() && source["year"].is_i64(),
-            "{law}"
-        );
+        assert!(source["title"].is_string() && source["year"].is_i64(), "{law}");
     }
     let hertz = json(&["laws", "elastic_hertz", "--json"]);
-    assert!(
-        hertz[0]["source"]["journal"]
-            .as_str()
-            .unwrap()
-            .contains("für")
-    );
+    assert!(hertz[0]["source"]["journal"].as_str().unwrap().contains("für"));
 }
 
 #[test]
@@ -280,10 +220,7 @@ fn schema_completions_and_manual_pages_come_from_the_program() {
         assert!(schema[files]["properties"]["beads"].is_object(), "{files}");
     }
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        assert!(
-            good(&["completions", shell]).contains("reproduce"),
-            "{shell}"
-        );
+        assert!(good(&["completions", shell]).contains("reproduce"), "{shell}");
     }
     assert!(good(&["man"]).contains(".TH"));
     let folder = folder("man");
@@ -309,10 +246,7 @@ fn the_user_s_mistakes_end_with_code_2_and_say_what_was_expected() {
         (&["shot", "--step", "1 kg", "--solver", "rk4"], "time"),
         (&["shot", "--npy"], "--out"),
         (&["shot", "--solver", "euler"], "adaptive"),
-        (
-            &["shot", "-p", "newtons-cradle", "--duration", "-1 s"],
-            "not positive",
-        ),
+        (&["shot", "-p", "newtons-cradle", "--duration", "-1 s"], "not positive"),
         (&["sweep", "--speeds", ""], "m/s"),
         (&["sweep", "--speeds", "1:2:1000000000000"], "speeds"),
         (&["sweep", "--speeds", "-1"], "not positive"),
@@ -340,10 +274,7 @@ fn mistaken(name: &str, from: &str, to: &str) -> String {
 fn a_mistake_in_a_file_is_shown_at_its_line_underlined() {
     let message = mistaken("weight", "radius = \"6.35 mm\"", "radius = \"6.35 kg\"");
     assert!(message.contains("mine.toml:"), "{message}");
-    assert!(
-        message.contains("radius = \"6.35 kg\"") && message.contains('─'),
-        "{message}"
-    );
+    assert!(message.contains("radius = \"6.35 kg\"") && message.contains('─'), "{message}");
     assert!(message.contains("a length in m"), "{message}");
     let unknown = mistaken("unknown", "radius = \"6", "raduis = \"6");
     assert!(unknown.contains("did you mean `radius`?"), "{unknown}");
@@ -385,12 +316,8 @@ fn a_failed_shot_leaves_no_files() {
 
 #[test]
 fn a_closed_pipe_is_no_failure() {
-    let mut child = program()
-        .args(["laws"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child =
+        program().args(["laws"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
     assert_eq!(code(&output), 0);

@@ -45,33 +45,12 @@ fn whole_pulses_of_a_campaign_give_back_what_its_rig_was_made_of() {
     // What is left out says why.
     let silent: String = (0..3000).map(|n| format!("{}e-6,0\n", n)).collect();
     let silent = file(&folder, "silent.csv", &format!("time_s,volts\n{silent}"));
-    let message = refused(&[
-        "fit",
-        &silent,
-        "-m",
-        &rig,
-        "--case",
-        "dry",
-        "--free",
-        "steel.eta",
-    ]);
+    let message = refused(&["fit", &silent, "-m", &rig, "--case", "dry", "--free", "steel.eta"]);
     assert!(message.contains("no record is left"), "{message}");
     assert!(message.contains("was the sensor connected"), "{message}");
     let untitled = file(&folder, "untitled.csv", "0.5,7e-4,1e-7\n0.6,6.8e-4,1e-7\n");
-    let message = refused(&[
-        "fit",
-        &untitled,
-        "-m",
-        &rig,
-        "--case",
-        "dry",
-        "--free",
-        "steel.eta",
-    ]);
-    assert!(
-        message.contains("names its columns, speed_m_s"),
-        "{message}"
-    );
+    let message = refused(&["fit", &untitled, "-m", &rig, "--case", "dry", "--free", "steel.eta"]);
+    assert!(message.contains("names its columns, speed_m_s"), "{message}");
 }
 
 /// Recordings as an oscilloscope writes them, with no speed of their own, and a table of shots: text
@@ -108,15 +87,7 @@ fn recordings_without_a_speed_are_fitted_with_those_of_a_table_of_shots() {
     }
     let shots = file(&folder, "shots.csv", &table);
     let fit_result = |more: &[&str]| {
-        let begin = [
-            "fit",
-            "-m",
-            &rig,
-            "--case",
-            "dry",
-            "--free",
-            "steel.eta,sensor_gain",
-        ];
+        let begin = ["fit", "-m", &rig, "--case", "dry", "--free", "steel.eta,sensor_gain"];
         let end = ["--rate", "500kHz", "--json"];
         let words: Vec<&str> = begin.iter().chain(more).chain(&end).copied().collect();
         json(&words)
@@ -132,15 +103,10 @@ fn recordings_without_a_speed_are_fitted_with_those_of_a_table_of_shots() {
             ["value", "standard_error"].map(|key| parameter[key].as_f64().unwrap())
         });
         // Texts have nine digits, and the campaign's speeds are rounded nowhere.
-        assert!(
-            (one[0] - other[0]).abs() < 1e-2 * other[1],
-            "{one:?} {other:?}"
-        );
+        assert!((one[0] - other[0]).abs() < 1e-2 * other[1], "{one:?} {other:?}");
     }
     // One file alone, whose first line is an oscilloscope's and no title.
-    let scope = fs::read_dir(&bare)
-        .unwrap()
-        .map(|entry| entry.unwrap().path());
+    let scope = fs::read_dir(&bare).unwrap().map(|entry| entry.unwrap().path());
     let scope = scope.filter(|path| path.extension().is_some_and(|e| e == "csv"));
     for scope in scope {
         let dry = table.lines().any(|line| {
@@ -179,10 +145,8 @@ fn text(folder: &Path, name: &str, volts: &[f64], interval_s: f64) {
 /// An NPY of one shot.
 fn array(folder: &Path, name: &str, volts: &[f64]) {
     fs::create_dir_all(folder).unwrap();
-    let about = format!(
-        "{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}",
-        volts.len()
-    );
+    let about =
+        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", volts.len());
     let about = format!("{about:<117}\n");
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend(u16::try_from(about.len()).unwrap().to_le_bytes());

@@ -33,10 +33,7 @@ fn table(folder: &Path, name: &str) -> (Vec<String>, Vec<Vec<String>>) {
     let text = fs::read_to_string(folder.join(name)).unwrap();
     let mut all = lines(&text);
     let titles = all.remove(0);
-    assert!(
-        all.iter().all(|line| line.len() == titles.len()),
-        "{name}: {text}"
-    );
+    assert!(all.iter().all(|line| line.len() == titles.len()), "{name}: {text}");
     (titles, all)
 }
 
@@ -96,42 +93,16 @@ fn tables_of_a_fit_agree_with_its_json() {
         out.to_str().unwrap(),
     ];
     let found = json(&with_errors(&fit));
-    for column in [
-        "name",
-        "unit",
-        "value",
-        "standard_error",
-        "at_bound",
-        "start",
-        "lower",
-        "upper",
-        "scale",
-    ] {
-        holds(
-            &out,
-            "parameters.csv",
-            column,
-            &found["parameters"],
-            &format!("/{column}"),
-        );
+    for column in
+        ["name", "unit", "value", "standard_error", "at_bound", "start", "lower", "upper", "scale"]
+    {
+        holds(&out, "parameters.csv", column, &found["parameters"], &format!("/{column}"));
     }
     assert_eq!(matrix(&out, "covariance.csv"), rows(&found["covariance"]));
     assert_eq!(matrix(&out, "correlation.csv"), rows(&found["correlation"]));
-    holds(
-        &out,
-        "singular-values.csv",
-        "singular_value",
-        &found["singular_values"],
-        "",
-    );
+    holds(&out, "singular-values.csv", "singular_value", &found["singular_values"], "");
     holds(&out, "singular-values.csv", "B", &found["directions"], "/1");
-    holds(
-        &out,
-        "starts.csv",
-        "eta to (Pa s)",
-        &found["starts"],
-        "/to/0",
-    );
+    holds(&out, "starts.csv", "eta to (Pa s)", &found["starts"], "/to/0");
     holds(&out, "starts.csv", "cost", &found["starts"], "/cost");
     for (column, pointer) in [
         ("model", "/model"),
@@ -140,47 +111,20 @@ fn tables_of_a_fit_agree_with_its_json() {
         ("weight", "/weight"),
         ("prediction_error", "/cross_validation/mean"),
     ] {
-        holds(
-            &out,
-            "comparison.csv",
-            column,
-            &found["comparison"]["models"],
-            pointer,
-        );
+        holds(&out, "comparison.csv", column, &found["comparison"]["models"], pointer);
     }
     let curves: Vec<Value> = (found["profiles"].as_array().unwrap().iter())
         .flat_map(|of| of["chi_square_rise"].as_array().unwrap().clone())
         .collect();
-    holds(
-        &out,
-        "profiles.csv",
-        "chi_square_rise",
-        &Value::from(curves),
-        "",
-    );
+    holds(&out, "profiles.csv", "chi_square_rise", &Value::from(curves), "");
     let ends: Vec<Value> = (found["profiles"].as_array().unwrap().iter())
         .flat_map(|of| of["intervals"].as_array().unwrap().clone())
         .collect();
-    holds(
-        &out,
-        "intervals.csv",
-        "upper",
-        &Value::from(ends.clone()),
-        "/upper",
-    );
-    holds(
-        &out,
-        "intervals.csv",
-        "chi_square_rise",
-        &Value::from(ends),
-        "/rise",
-    );
+    holds(&out, "intervals.csv", "upper", &Value::from(ends.clone()), "/upper");
+    holds(&out, "intervals.csv", "chi_square_rise", &Value::from(ends), "/rise");
     let (_, summary) = table(&out, "summary.csv");
     let chi_square = summary.iter().find(|line| line[0] == "chi_square").unwrap();
-    assert_eq!(
-        chi_square[1].parse::<f64>().ok(),
-        found["chi_square"]["value"].as_f64()
-    );
+    assert_eq!(chi_square[1].parse::<f64>().ok(), found["chi_square"]["value"].as_f64());
     assert_eq!(table(&out, "fit.csv").1.len(), 12);
 }
 
@@ -232,15 +176,7 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
     // Few of this oil's speeds allow several pairs: laws go through the others.
     let (dry, motor) = (curve(&folder, "dry"), curve(&folder, "motor"));
     let (run_gauge, run_design) = (folder.join("gauged"), folder.join("designed"));
-    let gauge = [
-        "gauge",
-        &motor,
-        "--dry",
-        &dry,
-        "--json",
-        "-o",
-        run_gauge.to_str().unwrap(),
-    ];
+    let gauge = ["gauge", &motor, "--dry", &dry, "--json", "-o", run_gauge.to_str().unwrap()];
     let found = json(&with_errors(&gauge));
     for (column, pointer) in [
         ("name", "/name"),
@@ -250,24 +186,9 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
     ] {
         holds(&run_gauge, "oils.csv", column, &found["oils"], pointer);
     }
-    holds(
-        &run_gauge,
-        "dry.csv",
-        "standard_error",
-        &found["dry"],
-        "/standard_error",
-    );
-    let laws = Value::from(vec![
-        found["stiffness_law"].clone(),
-        found["relaxation_law"].clone(),
-    ]);
-    holds(
-        &run_gauge,
-        "laws.csv",
-        "exponent_error",
-        &laws,
-        "/exponent_error",
-    );
+    holds(&run_gauge, "dry.csv", "standard_error", &found["dry"], "/standard_error");
+    let laws = Value::from(vec![found["stiffness_law"].clone(), found["relaxation_law"].clone()]);
+    holds(&run_gauge, "laws.csv", "exponent_error", &laws, "/exponent_error");
     let (titles, pairs) = table(&run_gauge, "contacts.csv");
     let taken = titles.iter().position(|title| title == "taken").unwrap();
     let taken: Vec<_> = pairs.iter().filter(|line| line[taken] == "true").collect();
@@ -276,19 +197,11 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
     let known: Vec<&Value> = rows.filter(|row| row["branch"] != "unknown").collect();
     assert_eq!(taken.len(), known.len());
     for (line, row) in taken.iter().zip(known) {
-        assert_eq!(
-            line[2].parse::<f64>().ok(),
-            row["stiffness"]["value"].as_f64()
-        );
-        assert_eq!(
-            line[4].parse::<f64>().ok(),
-            row["relaxation_time_s"]["value"].as_f64()
-        );
+        assert_eq!(line[2].parse::<f64>().ok(), row["stiffness"]["value"].as_f64());
+        assert_eq!(line[4].parse::<f64>().ok(), row["relaxation_time_s"]["value"].as_f64());
     }
     let others = found["contacts"].as_array().unwrap().iter();
-    let others: usize = others
-        .map(|row| row["others"].as_array().unwrap().len())
-        .sum();
+    let others: usize = others.map(|row| row["others"].as_array().unwrap().len()).sum();
     assert_eq!(pairs.len(), 6 + others);
     let (_, summary) = table(&run_gauge, "summary.csv");
     assert_eq!(Some(summary[0][1].as_str()), found["verdict"].as_str());
@@ -307,21 +220,9 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
     let found = json(&with_errors(&design));
     for (name, key) in [("design.csv", "ranked"), ("series.csv", "series")] {
         holds(&run_design, name, "measure", &found[key], "/measure");
-        holds(
-            &run_design,
-            name,
-            "B_error (kg s/m^2)",
-            &found[key],
-            "/standard_errors/1",
-        );
+        holds(&run_design, name, "B_error (kg s/m^2)", &found[key], "/standard_errors/1");
     }
-    holds(
-        &run_design,
-        "now.csv",
-        "standard_error",
-        &found["standard_errors_now"],
-        "",
-    );
+    holds(&run_design, "now.csv", "standard_error", &found["standard_errors_now"], "");
 }
 
 #[test]
@@ -329,33 +230,15 @@ fn a_stated_form_tells_both_laws_from_incident_times() {
     let folder = folder("form");
     let (dry, pump) = (curve(&folder, "dry"), curve(&folder, "pump"));
     let out = folder.join("out");
-    let gauge = [
-        "gauge", &pump, "--dry", &dry, "--use", "incident", "--form", "power",
-    ];
-    let found = json(&with_errors(
-        &[&gauge[..], &["--json", "-o", out.to_str().unwrap()]].concat(),
-    ));
+    let gauge = ["gauge", &pump, "--dry", &dry, "--use", "incident", "--form", "power"];
+    let found =
+        json(&with_errors(&[&gauge[..], &["--json", "-o", out.to_str().unwrap()]].concat()));
     assert_eq!(found["to_add"], Value::Null);
     let form = &found["form"];
-    holds(
-        &out,
-        "form-contacts.csv",
-        "stiffness (N/m^1.5)",
-        &form["contacts"],
-        "/stiffness/value",
-    );
-    let laws = Value::from(vec![
-        form["stiffness"].clone(),
-        form["relaxation_time_s"].clone(),
-    ]);
+    holds(&out, "form-contacts.csv", "stiffness (N/m^1.5)", &form["contacts"], "/stiffness/value");
+    let laws = Value::from(vec![form["stiffness"].clone(), form["relaxation_time_s"].clone()]);
     holds(&out, "form.csv", "exponent", &laws, "/exponent");
-    holds(
-        &out,
-        "form.csv",
-        "prefactor_relative_error",
-        &laws,
-        "/prefactor_relative_error",
-    );
+    holds(&out, "form.csv", "prefactor_relative_error", &laws, "/prefactor_relative_error");
     assert!(out.join("contacts.png").exists());
     let text = String::from_utf8(run(&with_errors(&gauge)).stdout).unwrap();
     assert!(text.contains("as power laws of speed"), "{text}");

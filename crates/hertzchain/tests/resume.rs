@@ -98,12 +98,7 @@ fn a_posterior_is_the_same_in_one_run_and_in_two() {
     };
     let at_once = run_into(&whole, &["--steps", "400"]);
     let first = run_into(&parts, &["--steps", "300"]);
-    assert!(
-        first["posterior"]["unconverged"]
-            .as_str()
-            .unwrap()
-            .contains("has not converged")
-    );
+    assert!(first["posterior"]["unconverged"].as_str().unwrap().contains("has not converged"));
     let then = run_into(&parts, &["--steps", "400", "--resume"]);
     assert_eq!(at_once["posterior"], then["posterior"]);
 }

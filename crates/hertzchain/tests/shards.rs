@@ -21,11 +21,7 @@ impl Scratch {
 
     fn run(&self, arguments: &[&str]) -> Output {
         let mut program = Command::new(env!("CARGO_BIN_EXE_hertzchain"));
-        program
-            .current_dir(&self.0)
-            .args(arguments)
-            .output()
-            .unwrap()
+        program.current_dir(&self.0).args(arguments).output().unwrap()
     }
 
     fn done(&self, arguments: &[&str]) -> String {
@@ -64,24 +60,13 @@ const SPEEDS: &str = "log:0.3:1.2:9,1e-9";
 #[test]
 fn merged_shards_of_a_sweep_are_the_files_and_the_words_of_the_sweep() {
     let scratch = Scratch::new("sweep");
-    let sweep = [
-        "sweep",
-        "-p",
-        "pump",
-        "--speeds",
-        SPEEDS,
-        "--accuracy",
-        "1e-5",
-    ];
+    let sweep = ["sweep", "-p", "pump", "--speeds", SPEEDS, "--accuracy", "1e-5"];
     let with = |more: &[&'static str]| [&sweep[..], more].concat();
     let whole = scratch.done(&with(&["--out", "whole"]));
     scratch.done(&with(&["--shard", "2/3", "--out", "a"]));
     scratch.done(&with(&["--shard", "1/3", "--out", "b", "--threads", "1"]));
     let reported = scratch.refused(&["merge", "a", "b", "--out", "merged"]);
-    assert!(
-        reported.contains("1 of 3 shards") && reported.contains("--shard 3/3"),
-        "{reported}"
-    );
+    assert!(reported.contains("1 of 3 shards") && reported.contains("--shard 3/3"), "{reported}");
     assert!(!scratch.0.join("merged").exists());
     scratch.done(&with(&["--shard", "3/3", "--out", "b"]));
     let again = scratch.done(&with(&["--shard", "3/3", "--out", "b"]));

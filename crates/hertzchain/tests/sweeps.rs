@@ -16,23 +16,12 @@ fn text(bytes: &[u8]) -> String {
 fn two_speeds_give_a_power_law_without_errors() {
     let output = sweep(&["-p", "hertz", "--speeds", "0.5,1"]);
     let printed = text(&output.stdout);
-    assert!(
-        printed.contains("two speeds, which determine no errors"),
-        "{printed}"
-    );
-    assert!(
-        !printed.contains('±') && !printed.contains("R²"),
-        "{printed}"
-    );
+    assert!(printed.contains("two speeds, which determine no errors"), "{printed}");
+    assert!(!printed.contains('±') && !printed.contains("R²"), "{printed}");
     let output = sweep(&["-p", "hertz", "--speeds", "0.5,1", "--json"]);
     let swept: Value = serde_json::from_slice(&output.stdout).unwrap();
     let law = &swept["power_law_incident"];
-    for key in [
-        "prefactor_error_s",
-        "exponent_error",
-        "covariance",
-        "r_squared",
-    ] {
+    for key in ["prefactor_error_s", "exponent_error", "covariance", "r_squared"] {
         assert!(law[key].is_null(), "{key}: {}", law[key]);
     }
     assert!(law["exponent"].is_number());
@@ -73,17 +62,11 @@ fn a_fit_ends_where_its_errors_do_and_has_none_below_the_accuracy_of_the_times()
     let law = &swept["power_law_incident"];
     let of = |key: &str| law[key].as_f64().unwrap();
     // A perfect power law: what scatters is far less than what is not known.
-    assert!(
-        of("prefactor_error_s") < of("prefactor_accuracy_s"),
-        "{law}"
-    );
+    assert!(of("prefactor_error_s") < of("prefactor_accuracy_s"), "{law}");
     let reached = (swept["points"].as_array().unwrap().iter())
         .map(|point| point["accuracy_reached"].as_f64().unwrap());
     let least = reached.fold(f64::INFINITY, f64::min);
-    assert!(
-        of("prefactor_accuracy_s") >= least * of("prefactor_s"),
-        "{law}"
-    );
+    assert!(of("prefactor_accuracy_s") >= least * of("prefactor_s"), "{law}");
     assert!(of("exponent_accuracy") > 0.0, "{law}");
     let printed = text(&sweep(&hertz[..4]).stdout);
     // The same as in JSON, in µs to two digits.
@@ -97,10 +80,7 @@ fn a_sweep_of_a_chain_without_a_wall_tells_what_a_shot_tells() {
     for preset in ["newtons-cradle", "heavy-striker"] {
         let output = sweep(&["-p", preset, "--speeds", "0.25,0.5"]);
         let printed = text(&output.stdout);
-        assert!(
-            printed.contains("No times of flight: the chain has no wall."),
-            "{printed}"
-        );
+        assert!(printed.contains("No times of flight: the chain has no wall."), "{printed}");
         assert!(!printed.contains("ToF"), "{printed}");
         let arguments = ["-p", preset, "--speeds", "0.25,0.5", "--json"];
         let swept: Value = serde_json::from_slice(&sweep(&arguments).stdout).unwrap();
@@ -110,10 +90,7 @@ fn a_sweep_of_a_chain_without_a_wall_tells_what_a_shot_tells() {
         let largest = (maxima.iter().filter_map(|peak| peak["value"].as_f64())).fold(0.0, f64::max);
         // Five digits in the table.
         let peak = format!("{largest:.4}");
-        assert!(
-            largest > 0.0 && printed.contains(&peak[..5]),
-            "{peak}: {printed}"
-        );
+        assert!(largest > 0.0 && printed.contains(&peak[..5]), "{peak}: {printed}");
     }
 }
 
@@ -123,10 +100,7 @@ fn threads_are_counted_from_1() {
         let output = sweep(&["--threads", count]);
         assert_eq!(output.status.code(), Some(2));
         let reported = text(&output.stderr);
-        assert!(
-            reported.contains("expected a whole number from 1 to 1024"),
-            "{reported}"
-        );
+        assert!(reported.contains("expected a whole number from 1 to 1024"), "{reported}");
     }
 }
 
@@ -134,10 +108,7 @@ fn threads_are_counted_from_1() {
 fn a_calibrated_sweep_says_so() {
     let speeds = ["-p", "hertz", "-a", "1e-3", "--speeds", "0.1:1:200"];
     let printed = text(&sweep(&speeds).stdout);
-    assert!(
-        printed.contains("chosen by 48 calibration shots"),
-        "{printed}"
-    );
+    assert!(printed.contains("chosen by 48 calibration shots"), "{printed}");
     let each = [&speeds[..], &["--json", "--error-control", "per-shot"]].concat();
     let swept: Value = serde_json::from_slice(&sweep(&each).stdout).unwrap();
     assert!(swept["calibration"].is_null());

@@ -76,9 +76,7 @@ fn results_of_a_dimensionless_chain_name_no_units() {
 fn results_in_si_name_their_units() {
     let (out, _) = folder("si-results");
     let path = out.to_str().unwrap();
-    let swept = good(&[
-        "sweep", "-p", "dry", "--speeds", "0.5,1", "--json", "--out", path,
-    ]);
+    let swept = good(&["sweep", "-p", "dry", "--speeds", "0.5,1", "--json", "--out", path]);
     let json: Value = serde_json::from_str(&swept).unwrap();
     assert!(json["points"][0]["tof_incident_s"].is_number());
     let table = fs::read_to_string(out.join("sweep.csv")).unwrap();
@@ -91,18 +89,11 @@ fn tiny_numbers_have_an_exponent_and_every_number_is_short() {
     good(&["shot", "-p", "dry", "--out", out.to_str().unwrap()]);
     for file in ["traces.csv", "energy.csv"] {
         let text = fs::read_to_string(out.join(file)).unwrap();
-        let cells: Vec<&str> = text
-            .lines()
-            .skip(1)
-            .flat_map(|line| line.split(','))
-            .collect();
+        let cells: Vec<&str> = text.lines().skip(1).flat_map(|line| line.split(',')).collect();
         // A sign, seventeen digits, a point and an exponent.
         let longest = cells.iter().max_by_key(|cell| cell.len()).unwrap();
         assert!(longest.len() <= 24, "{file}: {longest}");
-        assert!(
-            cells.iter().all(|cell| cell.parse::<f64>().is_ok()),
-            "{file}"
-        );
+        assert!(cells.iter().all(|cell| cell.parse::<f64>().is_ok()), "{file}");
         assert!(cells.iter().any(|cell| cell.contains("e-")), "{file}");
     }
 }
@@ -116,9 +107,7 @@ fn traces_hold_no_numbers_below_the_solver_s_error() {
         .flat_map(|line| line.split(',').skip(1))
         .map(|cell| cell.parse().unwrap())
         .collect();
-    let largest = forces
-        .iter()
-        .fold(0.0_f64, |most, force| most.max(force.abs()));
+    let largest = forces.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
     let shot = good(&["shot", "-p", "dry", "--json"]);
     let shot: Value = serde_json::from_str(&shot).unwrap();
     let least = shot["tolerance"].as_f64().unwrap() * largest;
@@ -145,10 +134,7 @@ fn what_was_understood_is_told_in_numbers() {
     assert_eq!(row("Ends", "far end")["kind"], "fixed half-bead");
     let (_, file) = folder("plain-check");
     let plain: Value = serde_json::from_str(&good(&["check", &file, "--json"])).unwrap();
-    let units: Vec<_> = keys(&plain)
-        .into_iter()
-        .filter(|key| has_unit(key))
-        .collect();
+    let units: Vec<_> = keys(&plain).into_iter().filter(|key| has_unit(key)).collect();
     assert!(units.is_empty(), "{units:?}");
 }
 
@@ -159,9 +145,7 @@ fn beads_are_counted_in_chains_without_units_too() {
     assert!(shot.contains(" beads per unit time"), "{shot}");
     let theory = good(&["theory", &file]);
     for (name, end) in [("speed ", " beads per unit time"), ("length ", " beads")] {
-        let found = theory
-            .lines()
-            .any(|line| line.trim().starts_with(name) && line.ends_with(end));
+        let found = theory.lines().any(|line| line.trim().starts_with(name) && line.ends_with(end));
         assert!(found, "{name}: {theory}");
     }
 }
@@ -169,10 +153,7 @@ fn beads_are_counted_in_chains_without_units_too() {
 #[test]
 fn times_have_the_digits_of_the_accuracy_that_was_reached() {
     let printed = good(&["shot", "-p", "dry", "-a", "1e-13", "--check"]);
-    let line = printed
-        .lines()
-        .find(|line| line.contains("incident time"))
-        .unwrap();
+    let line = printed.lines().find(|line| line.contains("incident time")).unwrap();
     let number = line.split_whitespace().rev().nth(1).unwrap();
     // 1e-11 of the time was reached: the reference's nine digits and at most
     // three more.
@@ -185,19 +166,16 @@ fn competing_maxima_and_a_wall_pulse_without_an_incident_one_are_in_tables_and_j
     let (out, file) = folder("competing");
     let written = |beads: u32, striker: f64| {
         let striker = format!("speed = 1\nmass = {striker:?}\n");
-        let row = PLAIN
-            .replace("speed = 1\n", &striker)
-            .replace("bead = 2", "bead = 1");
+        let row = PLAIN.replace("speed = 1\n", &striker).replace("bead = 2", "bead = 1");
         fs::write(&file, row.replace("count = 8", &format!("count = {beads}"))).unwrap();
     };
     let json = |arguments: &[&str]| serde_json::from_str::<Value>(&good(arguments)).unwrap();
     // A striker of ten beads presses a single one until after the wall's maximum.
     written(1, 10.0);
     let sweep = ["sweep", &file, "--speeds", "1", "--json"];
-    for passage in [
-        &json(&["shot", &file, "--json"])["passage"],
-        &json(&sweep)["points"][0]["passage"],
-    ] {
+    for passage in
+        [&json(&["shot", &file, "--json"])["passage"], &json(&sweep)["points"][0]["passage"]]
+    {
         assert!(passage["missing"].is_string(), "{passage}");
         // Half of 12.1736, when the striker lets go of a row that is elastic.
         let wall = passage["wall"]["time"].as_f64().unwrap();
@@ -207,14 +185,9 @@ fn competing_maxima_and_a_wall_pulse_without_an_incident_one_are_in_tables_and_j
     written(3, 1000.0);
     let path = out.to_str().unwrap();
     let swept = json(&["sweep", &file, "--speeds", "1", "--json", "--out", path]);
-    let competing = swept["points"][0]["passage"]["competing"]
-        .as_array()
-        .unwrap();
+    let competing = swept["points"][0]["passage"]["competing"].as_array().unwrap();
     for pulse in ["incident", "wall", "reflected"] {
-        assert!(
-            competing.iter().any(|other| other["pulse"] == pulse),
-            "{pulse}"
-        );
+        assert!(competing.iter().any(|other| other["pulse"] == pulse), "{pulse}");
     }
     let table = fs::read_to_string(out.join("sweep.csv")).unwrap();
     let last: Vec<&str> = table.lines().last().unwrap().rsplit(',').take(4).collect();

@@ -19,10 +19,8 @@ fn only(case: &str, changes: &[(&str, &str)]) -> String {
     let rig = parts.next().unwrap();
     let own = parts.find(|part| part.starts_with(&format!("name = \"{case}\"")));
     let text = [rig, own.unwrap()].join(CASE);
-    let always = [
-        ("speed_count = 60", "speed_count = 4"),
-        ("record = \"0.1 s\"", "record = \"30 ms\""),
-    ];
+    let always =
+        [("speed_count = 60", "speed_count = 4"), ("record = \"0.1 s\"", "record = \"30 ms\"")];
     let all = always.iter().chain(changes);
     all.fold(text, |text, (from, to)| {
         assert!(text.contains(from), "{from}");
@@ -52,9 +50,7 @@ fn evaluated(name: &str, text: &str, seeds: u64, options: &[Options]) -> Vec<Vec
     let folders = run(text, 1..=seeds, &under).unwrap();
     let each = |options: &Options| -> Vec<Evaluated> {
         let folders = folders.iter();
-        folders
-            .flat_map(|folder| evaluate(folder, options).unwrap())
-            .collect()
+        folders.flat_map(|folder| evaluate(folder, options).unwrap()).collect()
     };
     let all = options.iter().map(each);
     let all = all.collect();
@@ -70,10 +66,7 @@ const LEAST: f64 = 1e-3;
 /// seven times too large with four means, and 1.7 times with 24 shots.
 fn by_chance(evaluated: &ChiSquare, name: &str) {
     let band = LEAST..1.0 - LEAST;
-    assert!(
-        band.contains(&evaluated.probability),
-        "{name}: {evaluated:?}"
-    );
+    assert!(band.contains(&evaluated.probability), "{name}: {evaluated:?}");
 }
 
 /// Chi-squares of both times against what they are held to at all four speeds.
@@ -180,10 +173,7 @@ fn against_truth(shots: &[Evaluated], time: usize) -> ChiSquare {
 fn a_strong_high_pass_moves_times_of_flight_and_the_recordings_own_corner_puts_them_back() {
     let mut changes = COMPACT.to_vec();
     changes.push(("high_pass = \"0.5 Hz\"", "high_pass = \"1 kHz\""));
-    let untold = Options {
-        keep_droop: true,
-        ..Options::default()
-    };
+    let untold = Options { keep_droop: true, ..Options::default() };
     let both = evaluated("droop", &dry(&changes), 4, &[untold, Options::default()]);
     for (time, name) in TIMES.iter().enumerate() {
         let [untold, reported] = [0, 1].map(|at: usize| against_truth(&both[at], time));

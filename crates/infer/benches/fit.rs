@@ -17,9 +17,7 @@ use hertzchain_infer::{
 };
 
 fn main() {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build_global();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build_global();
     pool.unwrap();
     divan::main();
 }
@@ -70,9 +68,7 @@ fn likelihoods(bencher: Bencher<'_, '_>, problem: &dyn Problem, best: &Fit, sd: 
         pairs.map(|(value, sd)| value + aside * sd).collect()
     };
     let points: Vec<Vec<f64>> = (0..POINTS).map(point).collect();
-    bencher
-        .counter(ItemsCount::new(POINTS))
-        .bench_local(|| problem.residuals(black_box(&points)));
+    bencher.counter(ItemsCount::new(POINTS)).bench_local(|| problem.residuals(black_box(&points)));
 }
 
 #[divan::bench]
@@ -91,14 +87,8 @@ fn likelihoods_of_the_surrogate(bencher: Bencher<'_, '_>) {
 }
 
 /// Numbers of the pump oil: five of its laws, and with three of the dry contacts eight.
-const MANY: [&str; 6] = [
-    "pump-oil.Y",
-    "pump-oil.nu:power",
-    "pump-oil.eta:power",
-    "aisi316.Y",
-    "aisi316.eta",
-    "dry.B",
-];
+const MANY: [&str; 6] =
+    ["pump-oil.Y", "pump-oil.nu:power", "pump-oil.eta:power", "aisi316.Y", "aisi316.eta", "dry.B"];
 
 fn pump(count: usize) -> CurveProblem {
     // Laws have two numbers each.

@@ -60,11 +60,7 @@ impl Measured {
     }
 
     fn data(self, truth: &Truth, seed: u64) -> Data {
-        let noise = Noise {
-            speed_m_s: 0.0005,
-            time_s: 5e-6,
-            correlation: 0.0,
-        };
+        let noise = Noise { speed_m_s: 0.0005, time_s: 5e-6, correlation: 0.0 };
         match self {
             Measured::Well => truth.measured(seed),
             Measured::ByShots(widened) => truth.measured_by_shots(seed, widened),
@@ -84,21 +80,14 @@ const DRY: Case = Case {
     preset: "dry",
     free: ["eta", "B"],
     exact: [3.2e4, 77.0],
-    set: [
-        ("aisi316.shear_viscosity", 3.2e4),
-        ("aisi316.bulk_viscosity", 3.2e4),
-    ],
+    set: [("aisi316.shear_viscosity", 3.2e4), ("aisi316.bulk_viscosity", 3.2e4)],
     by_rk4: false,
     measured: Measured::Well,
 };
 
 const CASES: [Case; 7] = [
     DRY,
-    Case {
-        name: "rk4",
-        by_rk4: true,
-        ..DRY
-    },
+    Case { name: "rk4", by_rk4: true, ..DRY },
     Case {
         name: "contacts",
         preset: "hertz-viscoelastic",
@@ -106,10 +95,7 @@ const CASES: [Case; 7] = [
         exact: [STIFFNESS, RELAXATION_S],
         set: [
             ("contacts[0].laws.elastic_hertz.stiffness", STIFFNESS),
-            (
-                "contacts[0].laws.damping_viscoelastic.relaxation_time",
-                RELAXATION_S,
-            ),
+            ("contacts[0].laws.damping_viscoelastic.relaxation_time", RELAXATION_S),
         ],
         by_rk4: false,
         measured: Measured::Well,
@@ -121,29 +107,14 @@ const CASES: [Case; 7] = [
         exact: [9e9, 8e-7],
         set: [
             ("contacts[1].laws.elastic_hertz.stiffness", 9e9),
-            (
-                "contacts[1].laws.damping_viscoelastic.relaxation_time",
-                8e-7,
-            ),
+            ("contacts[1].laws.damping_viscoelastic.relaxation_time", 8e-7),
         ],
         by_rk4: false,
         measured: Measured::Well,
     },
-    Case {
-        name: "bent",
-        measured: Measured::Poorly,
-        ..DRY
-    },
-    Case {
-        name: "scatter",
-        measured: Measured::ByShots(false),
-        ..DRY
-    },
-    Case {
-        name: "widened",
-        measured: Measured::ByShots(true),
-        ..DRY
-    },
+    Case { name: "bent", measured: Measured::Poorly, ..DRY },
+    Case { name: "scatter", measured: Measured::ByShots(false), ..DRY },
+    Case { name: "widened", measured: Measured::ByShots(true), ..DRY },
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -212,10 +183,7 @@ fn study(case: &Case, seeds: Range<usize>, sampled: usize) -> Result<(), Box<dyn
 fn moments(values: &[f64]) -> String {
     let of = values.len().max(2) as f64;
     let mean = values.iter().sum::<f64>() / of;
-    let squares = values
-        .iter()
-        .map(|value| (value - mean).powi(2))
-        .sum::<f64>();
+    let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
     let sd = (squares / (of - 1.0)).sqrt();
     let (error, error_of_sd) = (sd / of.sqrt(), sd / (2.0 * of).sqrt());
     format!("{mean:.3} ± {error:.3}, scattering by {sd:.3} ± {error_of_sd:.3}")
@@ -297,9 +265,7 @@ fn said(
     let mut by_posterior = None;
     if sampled {
         let posterior = posterior(problem, (&best, &covariance), seed)?;
-        by_posterior = Some(held(&|at, level| {
-            posterior.interval(at, [0.682_689, 0.95][level])
-        }));
+        by_posterior = Some(held(&|at, level| posterior.interval(at, [0.682_689, 0.95][level])));
     }
     Ok(Said {
         held: [Some(by_covariance), Some(by_profile), by_posterior],
@@ -314,14 +280,10 @@ fn posterior(
     (best, covariance): (&Fit, &Covariance),
     seed: usize,
 ) -> Result<hertzchain_infer::Posterior, Box<dyn Error>> {
-    let how = Sampling {
-        seed: seed as u64,
-        ..Sampling::default()
-    };
+    let how = Sampling { seed: seed as u64, ..Sampling::default() };
     let mut chain = Chain::start(problem, best, covariance, &how)?;
-    let found = chain.lead(problem, &Requirements::default(), MOST_STEPS, &mut |_| {
-        Ok::<(), InferError>(())
-    })?;
+    let found = chain
+        .lead(problem, &Requirements::default(), MOST_STEPS, &mut |_| Ok::<(), InferError>(()))?;
     Ok(found.map_err(|short| short.to_string())?)
 }
 

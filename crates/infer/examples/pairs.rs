@@ -71,10 +71,7 @@ impl Counts {
     }
 
     fn of(row: &WetRow, exact: [f64; 2]) -> Self {
-        let mut counts = Self {
-            rows: 1,
-            ..Self::default()
-        };
+        let mut counts = Self { rows: 1, ..Self::default() };
         match &row.contact {
             Err(_) => counts.none = 1,
             Ok(contact) => counts.count(contact, exact),
@@ -83,12 +80,7 @@ impl Counts {
     }
 
     fn count(&mut self, contact: &Contact, exact: [f64; 2]) {
-        let off = |pair: &Pair| {
-            pulls(pair, exact)
-                .map(f64::abs)
-                .into_iter()
-                .fold(0.0, f64::max)
-        };
+        let off = |pair: &Pair| pulls(pair, exact).map(f64::abs).into_iter().fold(0.0, f64::max);
         let is_true = |pair: &Pair| off(pair) < NEAR;
         let first = off(&contact.first);
         self.listed = usize::from(contact.pairs().into_iter().any(is_true));
@@ -134,11 +126,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, oil) in OILS.into_iter().zip(known_oils()?) {
         let wet_model = preset(name)?;
         let wet = Truth::of(&wet_model, &speeds);
-        let case = Case {
-            oil,
-            wet_model,
-            wet,
-        };
+        let case = Case { oil, wet_model, wet };
         for (what, ratios) in [("times", false), ("ratio", true)] {
             if asked.as_ref().is_some_and(|asked| asked != what) {
                 continue;
@@ -166,13 +154,8 @@ fn counted(
         false => case.wet.measured_with(noise, wet_seed),
     };
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains {
-        dry: dry_model,
-        wet: &case.wet_model,
-        free: &free,
-        own: &[],
-        accuracy: 1e-5,
-    };
+    let chains =
+        Chains { dry: dry_model, wet: &case.wet_model, free: &free, own: &[], accuracy: 1e-5 };
     let gauge = Gauge::new(&chains, dry.measured_with(noise, seed), wet);
     let gauge = gauge.map_err(|error| format!("seed {seed}: {error}"))?;
     let rows = gauge.rows();
@@ -202,10 +185,7 @@ fn words(row: &WetRow, exact: [f64; 2]) -> String {
             let pairs = pairs.map(|pair| {
                 let [(k, _), (a, a_sd)] = pair.estimates();
                 let [k_pull, a_pull] = pulls(pair, exact);
-                format!(
-                    "K {:.4e}, A {a:.4e} ± {a_sd:.1e} (off by {k_pull:.1}, {a_pull:.1})",
-                    k
-                )
+                format!("K {:.4e}, A {a:.4e} ± {a_sd:.1e} (off by {k_pull:.1}, {a_pull:.1})", k)
             });
             let pairs: Vec<String> = pairs.collect();
             format!(

@@ -29,10 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let seed = words.next().map_or(Ok(1), |word| word.parse())?;
     let experiment = preset(&name)?;
     println!("{TITLES}");
-    for row in Truth::of(&experiment, &speeds_m_s(SPEEDS))
-        .measured(seed)
-        .rows
-    {
+    for row in Truth::of(&experiment, &speeds_m_s(SPEEDS)).measured(seed).rows {
         let cells = [Some(row.speed_m_s), row.values[0], row.values[1]].map(cells);
         println!("{}", cells.join(","));
     }
@@ -41,7 +38,5 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// A value and its standard error, empty where nothing was seen.
 fn cells(of: Option<Estimate>) -> String {
-    of.map_or(",".to_owned(), |of| {
-        format!("{:e},{:e}", of.value, of.sigma)
-    })
+    of.map_or(",".to_owned(), |of| format!("{:e},{:e}", of.value, of.sigma))
 }

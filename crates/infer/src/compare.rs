@@ -55,8 +55,7 @@ impl Criteria {
     /// Whether the data reject the model (p < 0.001).
     #[must_use]
     pub fn is_rejected(&self) -> bool {
-        self.chi_square
-            .is_some_and(|found| found.probability < LEAST_BY_CHANCE)
+        self.chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
     }
 }
 
@@ -145,9 +144,7 @@ fn check(models: &[Compared<'_>]) -> Result<(), InferError> {
         }
         if !fit.ending.converged() {
             let why = &fit.ending;
-            return Err(InferError::NotConverged(format!(
-                "{name} has not converged: {why}"
-            )));
+            return Err(InferError::NotConverged(format!("{name} has not converged: {why}")));
         }
     }
     Ok(())
@@ -276,13 +273,7 @@ pub fn cross_validate(
     }
     let (mean, error) = mean_and_error(&rows);
     let unconverged = descents.iter().filter(|r| !r.ending().converged()).count();
-    Ok(CrossValidation {
-        mean,
-        error,
-        rows,
-        folds: count,
-        unconverged,
-    })
+    Ok(CrossValidation { mean, error, rows, folds: count, unconverged })
 }
 
 fn mean_and_error(rows: &[f64]) -> (f64, f64) {

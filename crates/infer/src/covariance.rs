@@ -68,41 +68,22 @@ impl Covariance {
             own(&combine(&found.right[..resolved], &sizes), 1.0)
         };
         let axes: Vec<Vec<f64>> = match fit.loss {
-            Loss::Squares => directions()
-                .take(resolved)
-                .map(|(value, v)| own(v, value.recip()))
-                .collect(),
-            _ => scatter(left, data, loss_factor * curvature)
-                .iter()
-                .map(axis)
-                .collect(),
+            Loss::Squares => {
+                directions().take(resolved).map(|(value, v)| own(v, value.recip())).collect()
+            }
+            _ => scatter(left, data, loss_factor * curvature).iter().map(axis).collect(),
         };
         let flat = directions().filter(|(value, _)| **value <= least);
         let unresolved: Vec<Vec<f64>> = flat.map(|(_, v)| own(v, 1.0)).collect();
         let entry = |i: usize, j: usize| axes.iter().map(|a| a[i] * a[j]).sum::<f64>();
-        let matrix: Vec<Vec<f64>> = (0..count)
-            .map(|i| (0..count).map(|j| entry(i, j)).collect())
-            .collect();
-        let open = |k: usize| {
-            unresolved
-                .iter()
-                .any(|d| (d[k] * norm(&columns[k])).abs() > TAKES_PART)
-        };
+        let matrix: Vec<Vec<f64>> =
+            (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect();
+        let open =
+            |k: usize| unresolved.iter().any(|d| (d[k] * norm(&columns[k])).abs() > TAKES_PART);
         let sd = |k: usize| {
-            if open(k) {
-                f64::INFINITY
-            } else {
-                matrix[k][k].sqrt()
-            }
+            if open(k) { f64::INFINITY } else { matrix[k][k].sqrt() }
         };
-        Self {
-            sd: (0..count).map(sd).collect(),
-            matrix,
-            held,
-            unresolved,
-            loss_factor,
-            axes,
-        }
+        Self { sd: (0..count).map(sd).collect(), matrix, held, unresolved, loss_factor, axes }
     }
 
     /// Correlation of two parameters; `None` where either has no finite, positive standard error.
@@ -133,8 +114,7 @@ impl Covariance {
 fn data_times(factor: f64, columns: &[Vec<f64>], data: usize) -> Vec<Vec<f64>> {
     let one = |column: &Vec<f64>| {
         let rows = column.iter().enumerate();
-        rows.map(|(i, x)| if i < data { factor * x } else { *x })
-            .collect()
+        rows.map(|(i, x)| if i < data { factor * x } else { *x }).collect()
     };
     columns.iter().map(one).collect()
 }
@@ -144,9 +124,7 @@ fn data_times(factor: f64, columns: &[Vec<f64>], data: usize) -> Vec<Vec<f64>> {
 fn scatter(left: &[Vec<f64>], data: usize, variance: f64) -> Vec<Vec<f64>> {
     let found = svd(&data_times(variance.sqrt(), left, data));
     let pairs = found.values.iter().zip(&found.right);
-    pairs
-        .map(|(value, v)| v.iter().map(|x| value * x).collect())
-        .collect()
+    pairs.map(|(value, v)| v.iter().map(|x| value * x).collect()).collect()
 }
 
 /// Fewer degrees of freedom say nothing of how residuals scatter. They are counted by a sum that
@@ -182,11 +160,8 @@ fn loss_factor(fit: &Fit, left: &[Vec<f64>]) -> f64 {
     if fit.beyond_loss() == 0 || count - known < LEAST_FREEDOM {
         return 1.0;
     }
-    let influences: Vec<(f64, f64)> = fit
-        .residuals
-        .iter()
-        .map(|r| fit.loss.influence(*r))
-        .collect();
+    let influences: Vec<(f64, f64)> =
+        fit.residuals.iter().map(|r| fit.loss.influence(*r)).collect();
     let squares: f64 = influences.iter().map(|(psi, _)| psi * psi).sum();
     let slopes: f64 = influences.iter().map(|(_, slope)| slope * slope).sum();
     let mean = curvature(fit);

@@ -22,12 +22,8 @@ pub enum Observable {
 
 impl Observable {
     /// Every observable, in the order of a row.
-    pub const ALL: [Self; 4] = [
-        Self::Incident,
-        Self::Reflected,
-        Self::WallOverPassing,
-        Self::ReturningOverPassing,
-    ];
+    pub const ALL: [Self; 4] =
+        [Self::Incident, Self::Reflected, Self::WallOverPassing, Self::ReturningOverPassing];
 
     /// Its column in a table.
     #[must_use]
@@ -85,10 +81,7 @@ impl Freedom {
     /// All errors have these degrees of freedom.
     #[must_use]
     pub const fn of_all(freedom: f64) -> Self {
-        Self {
-            speed: freedom,
-            values: [freedom; 4],
-        }
+        Self { speed: freedom, values: [freedom; 4] }
     }
 }
 
@@ -147,9 +140,7 @@ impl DataRow {
 
     /// The observables that were measured.
     pub fn observables(&self) -> impl Iterator<Item = Observable> + '_ {
-        Observable::ALL
-            .into_iter()
-            .filter(|of| self.value(*of).is_some())
+        Observable::ALL.into_iter().filter(|of| self.value(*of).is_some())
     }
 
     fn has_both_times(&self) -> bool {
@@ -210,13 +201,8 @@ impl Data {
     /// that: their errors count as known.
     #[must_use]
     pub fn lines_of_few_shots(&self) -> Vec<u64> {
-        let few = |freedom: &Freedom| {
-            freedom
-                .values
-                .iter()
-                .chain([&freedom.speed])
-                .any(|f| *f < FEWEST)
-        };
+        let few =
+            |freedom: &Freedom| freedom.values.iter().chain([&freedom.speed]).any(|f| *f < FEWEST);
         self.lines(|row| few(&row.freedom))
     }
 
@@ -229,12 +215,7 @@ impl Data {
             let all = values.chain([row.freedom.speed]);
             all.filter(|f| *f >= FEWEST && f.is_finite()).collect()
         };
-        let rows: Vec<Vec<f64>> = self
-            .rows
-            .iter()
-            .map(own)
-            .filter(|own| !own.is_empty())
-            .collect();
+        let rows: Vec<Vec<f64>> = self.rows.iter().map(own).filter(|own| !own.is_empty()).collect();
         let least = rows.iter().flatten().copied().reduce(f64::min)?;
         let most = rows.iter().flatten().copied().reduce(f64::max)?;
         Some((rows.len(), [least, most]))
@@ -245,10 +226,7 @@ impl Data {
     pub fn only(&self, wanted: &[Observable]) -> Self {
         let mut data = self.clone();
         for row in &mut data.rows {
-            for of in Observable::ALL
-                .into_iter()
-                .filter(|of| !wanted.contains(of))
-            {
+            for of in Observable::ALL.into_iter().filter(|of| !wanted.contains(of)) {
                 row.values[of.index()] = None;
             }
         }

@@ -102,11 +102,9 @@ pub fn design(
     let sized = sized(parameters, &fit.point);
     let sizes: Vec<f64> = sized.iter().map(|p| p.scale).collect();
     // What data, priors and all candidates together determine, best first.
-    let all = candidates
-        .iter()
-        .fold(Scaled::with_priors(&sized, &fit.jacobian), |sum, one| {
-            sum.and(&Scaled::of_rows(&sized, &one.rows, &one.doubts))
-        });
+    let all = candidates.iter().fold(Scaled::with_priors(&sized, &fit.jacobian), |sum, one| {
+        sum.and(&Scaled::of_rows(&sized, &one.rows, &one.doubts))
+    });
     let (found, floor) = all.decomposed();
     let pairs = found.values.into_iter().zip(found.right);
     let (open, known): (Vec<_>, Vec<_>) = pairs.partition(|(value, _)| is_weak(*value, floor));
@@ -121,20 +119,10 @@ pub fn design(
     let is_open = |k: &&usize| open.iter().any(|direction| direction[**k].abs() > MOVED);
     let (not_identifiable, named): (Vec<usize>, Vec<usize>) = targets.iter().partition(is_open);
     let words = |direction: &Vec<f64>| in_words(&sized, fit, direction);
-    let unit = |k: usize| {
-        (0..sizes.len())
-            .map(|i| f64::from(u8::from(i == k)))
-            .collect()
-    };
+    let unit = |k: usize| (0..sizes.len()).map(|i| f64::from(u8::from(i == k))).collect();
     let (aims, directions): (Vec<Aim>, Vec<(Vec<f64>, f64)>) = match named.is_empty() {
-        false => named
-            .iter()
-            .map(|k| (Aim::Parameter(*k), (unit(*k), sizes[*k])))
-            .unzip(),
-        true => known
-            .iter()
-            .map(|d| (Aim::Combination(words(d)), (d.clone(), 1.0)))
-            .unzip(),
+        false => named.iter().map(|k| (Aim::Parameter(*k), (unit(*k), sizes[*k]))).unzip(),
+        true => known.iter().map(|d| (Aim::Combination(words(d)), (d.clone(), 1.0))).unzip(),
     };
     let now = Information::new(&fit.jacobian.columns, (&sizes, &known), &directions);
     let (ranked, greedy) = ranked(&now, candidates, picks);
@@ -227,10 +215,7 @@ impl<'a> Information<'a> {
             (0..known.len()).map(entry).collect()
         };
         let along = |(direction, size): &(Vec<f64>, f64)| {
-            (
-                known.iter().map(|known| dot(known, direction)).collect(),
-                *size,
-            )
+            (known.iter().map(|known| dot(known, direction)).collect(), *size)
         };
         Self {
             rows: (0..known.len()).map(assumed).collect(),
@@ -246,30 +231,20 @@ impl<'a> Information<'a> {
         let mut rows = self.rows.clone();
         rows.extend(further.iter().map(|row| {
             // What a row says of other directions is noise.
-            let scaled: Vec<f64> = row
-                .iter()
-                .zip(self.sizes)
-                .map(|(x, size)| x * size)
-                .collect();
+            let scaled: Vec<f64> = row.iter().zip(self.sizes).map(|(x, size)| x * size).collect();
             self.known.iter().map(|known| dot(known, &scaled)).collect()
         }));
         let column = |k: usize| rows.iter().map(|row| row[k]).collect();
         let found = svd(&(0..self.known.len()).map(column).collect::<Vec<_>>());
         let pairs = found.values.iter().zip(&found.right);
         let compact = pairs.map(|(value, v)| v.iter().map(|x| x * value).collect());
-        Self {
-            rows: compact.collect(),
-            ..self.clone()
-        }
+        Self { rows: compact.collect(), ..self.clone() }
     }
 
     /// Standard errors of the aims, in units of sizes.
     fn sds(&self) -> Vec<f64> {
         let sd = |(aim, _): &(Vec<f64>, f64)| {
-            let parts = self
-                .rows
-                .iter()
-                .map(|row| (dot(row, aim) / dot(row, row)).powi(2));
+            let parts = self.rows.iter().map(|row| (dot(row, aim) / dot(row, row)).powi(2));
             parts.sum::<f64>().sqrt()
         };
         self.aims.iter().map(sd).collect()
@@ -279,13 +254,7 @@ impl<'a> Information<'a> {
     fn shown(&self) -> Vec<f64> {
         let pairs = self.sds().into_iter().zip(&self.aims);
         pairs
-            .map(|(sd, (_, size))| {
-                if sd > UNDETERMINED {
-                    f64::INFINITY
-                } else {
-                    sd * size
-                }
-            })
+            .map(|(sd, (_, size))| if sd > UNDETERMINED { f64::INFINITY } else { sd * size })
             .collect()
     }
 

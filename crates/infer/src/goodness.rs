@@ -37,9 +37,7 @@ pub(crate) fn chi_square_of(
     residuals: impl Iterator<Item = f64>,
     fit_result: usize,
 ) -> Option<ChiSquare> {
-    let rows: Vec<Estimate> = residuals
-        .map(|value| Estimate { value, sigma: 1.0 })
-        .collect();
+    let rows: Vec<Estimate> = residuals.map(|value| Estimate { value, sigma: 1.0 }).collect();
     chi_square(&rows, &vec![0.0; rows.len()], fit_result)
 }
 
@@ -71,8 +69,7 @@ impl Goodness {
     /// Whether the data reject the model (p < 0.001).
     #[must_use]
     pub fn is_rejected(&self) -> bool {
-        self.chi_square
-            .is_some_and(|found| found.probability < LEAST_BY_CHANCE)
+        self.chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
     }
 }
 
@@ -98,10 +95,7 @@ pub fn largest_residual(problem: &dyn Problem, fit: &Fit, of: Range<usize>) -> O
         let own = [(at, 1.0)];
         let response = responses.as_ref().map_or(&own[..], |all| &all[at]);
         let along = |direction: &[f64]| -> f64 {
-            response
-                .iter()
-                .map(|(row, change)| change * direction[*row])
-                .sum()
+            response.iter().map(|(row, change)| change * direction[*row]).sum()
         };
         let whole: f64 = response.iter().map(|(_, change)| change * change).sum();
         let free = whole - directions.iter().map(|one| along(one).powi(2)).sum::<f64>();
@@ -121,11 +115,7 @@ pub fn largest_residual(problem: &dyn Problem, fit: &Fit, of: Range<usize>) -> O
     let others = all.iter().filter(is_as_large);
     let others = others.map(|(other, _)| format!(" or {}", problem.residual_label(*other)));
     let label = problem.residual_label(residual) + &others.collect::<String>();
-    Some(Largest {
-        residual,
-        label,
-        sigmas,
-    })
+    Some(Largest { residual, label, sigmas })
 }
 
 /// Runs of equal sign in a row of residuals: too few mean that the curve's shape is wrong, though

@@ -53,11 +53,7 @@ impl Identifiability {
         let weak = pairs.filter(|(value, _)| is_weak(**value, floor));
         let unidentifiable = weak
             .map(|(value, direction)| {
-                let error = if *value <= floor {
-                    f64::INFINITY
-                } else {
-                    value.recip()
-                };
+                let error = if *value <= floor { f64::INFINITY } else { value.recip() };
                 unidentifiable(parameters, fit, (direction, error), &label)
             })
             .collect();
@@ -167,10 +163,7 @@ impl Scaled {
     /// With the priors' rows, too.
     pub(crate) fn with_priors(parameters: &[Parameter], jacobian: &Jacobian) -> Self {
         let rows = jacobian.columns.first().map_or(0, Vec::len);
-        let whole = Jacobian {
-            data_rows: rows,
-            ..jacobian.clone()
-        };
+        let whole = Jacobian { data_rows: rows, ..jacobian.clone() };
         Self::of(parameters, &whole)
     }
 
@@ -182,10 +175,7 @@ impl Scaled {
         let doubt = |k: usize| doubts.get(k).copied().unwrap_or(0.0);
         let errors = sizes.zip(&columns);
         let errors = errors.map(|((k, size), column)| doubt(k) * size + ROUNDING * norm(column));
-        Self {
-            errors: errors.collect(),
-            columns,
-        }
+        Self { errors: errors.collect(), columns }
     }
 
     /// Together with the rows of another.
@@ -219,9 +209,7 @@ impl Scaled {
         Determined {
             count: found.values.len() - weak.count(),
             worst: found.values.last().map_or(0.0, |least| known(*least)),
-            sd: (0..self.columns.len())
-                .map(|k| variance(k).sqrt())
-                .collect(),
+            sd: (0..self.columns.len()).map(|k| variance(k).sqrt()).collect(),
         }
     }
 }
@@ -236,9 +224,7 @@ fn unidentifiable(
     let mut effect = combine(&fit.jacobian.columns, &change);
     effect.truncate(fit.jacobian.data_rows);
     let numbered = effect.iter().map(|x| x.abs()).enumerate();
-    let (row, most) = numbered
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .unwrap_or((0, 0.0));
+    let (row, most) = numbered.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
     let known = match standard_error.is_finite() {
         true => format!("so it is known to {:.0} % only", 100.0 * standard_error),
         false => "zero within the error of the derivatives".to_owned(),
@@ -248,12 +234,7 @@ fn unidentifiable(
         changes(parameters, fit, &change),
         label(row)
     );
-    UnidentifiableDirection {
-        change,
-        effect,
-        standard_error,
-        words,
-    }
+    UnidentifiableDirection { change, effect, standard_error, words }
 }
 
 /// What percents of a parameter are of: its value, or its size where that is 0.
@@ -272,11 +253,7 @@ pub(crate) fn in_words(sized: &[Parameter], fit: &Fit, direction: &[f64]) -> Str
 /// A direction, in units of sizes, as changes of parameters in their units: the largest is one
 /// percent upward of its value.
 fn of_one_percent(sized: &[Parameter], fit: &Fit, direction: &[f64]) -> Vec<f64> {
-    let change: Vec<f64> = direction
-        .iter()
-        .zip(sized)
-        .map(|(d, p)| d * p.scale)
-        .collect();
+    let change: Vec<f64> = direction.iter().zip(sized).map(|(d, p)| d * p.scale).collect();
     let share = |k: usize| change[k] / whole(sized, fit, k);
     let largest = (0..change.len()).max_by(|i, j| share(*i).abs().total_cmp(&share(*j).abs()));
     let size = largest.map_or(0.0, |k| 0.01 / share(k));

@@ -130,9 +130,8 @@ const SWEEPS: usize = 60;
 pub(crate) fn svd(columns: &[Vec<f64>]) -> Svd {
     let n = columns.len();
     let mut rotated = columns.to_vec();
-    let mut right: Vec<Vec<f64>> = (0..n)
-        .map(|k| (0..n).map(|i| f64::from(u8::from(i == k))).collect())
-        .collect();
+    let mut right: Vec<Vec<f64>> =
+        (0..n).map(|k| (0..n).map(|i| f64::from(u8::from(i == k))).collect()).collect();
     for _ in 0..SWEEPS {
         if !sweep(&mut rotated, &mut right) {
             break;
@@ -171,17 +170,10 @@ fn rotate(columns: &mut [Vec<f64>], (i, j): (usize, usize), tangent: f64) {
 }
 
 fn sorted(rotated: Vec<Vec<f64>>, right: Vec<Vec<f64>>) -> Svd {
-    let mut triples: Vec<(f64, Vec<f64>, Vec<f64>)> = rotated
-        .into_iter()
-        .zip(right)
-        .map(|(left, right)| (norm(&left), left, right))
-        .collect();
+    let mut triples: Vec<(f64, Vec<f64>, Vec<f64>)> =
+        rotated.into_iter().zip(right).map(|(left, right)| (norm(&left), left, right)).collect();
     triples.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut found = Svd {
-        values: Vec::new(),
-        left: Vec::new(),
-        right: Vec::new(),
-    };
+    let mut found = Svd { values: Vec::new(), left: Vec::new(), right: Vec::new() };
     for (value, mut left, right) in triples {
         if value > 0.0 {
             left.iter_mut().for_each(|x| *x /= value);

@@ -134,11 +134,7 @@ impl Parameter {
     /// The same parameter, bounded.
     #[must_use]
     pub fn within(self, lower: f64, upper: f64) -> Self {
-        Self {
-            lower,
-            upper,
-            ..self
-        }
+        Self { lower, upper, ..self }
     }
 
     /// The same parameter with a prior.
@@ -237,10 +233,7 @@ impl Residuals {
     #[must_use]
     pub fn new(standardised: Vec<f64>) -> Self {
         let ln_sigmas = Vec::new();
-        Self {
-            standardised,
-            ln_sigmas,
-        }
+        Self { standardised, ln_sigmas }
     }
 }
 
@@ -271,10 +264,7 @@ impl Batch {
             let inputs = Inputs::of("batch").work("problem", problem);
             let add = |inputs: Inputs, point: &Vec<f64>| inputs.numbers("point", point);
             let name = points.iter().fold(inputs, add).fingerprint();
-            Self {
-                name,
-                points: points.to_vec(),
-            }
+            Self { name, points: points.to_vec() }
         };
         points.chunks(size.max(1)).map(batch).collect()
     }
@@ -313,14 +303,7 @@ impl<'a> Spread<'a> {
         compute: &'a Compute<'a>,
     ) -> Self {
         let failure = OnceLock::new();
-        Self {
-            problem,
-            fingerprint,
-            size,
-            workers: 1,
-            compute,
-            failure,
-        }
+        Self { problem, fingerprint, size, workers: 1, compute, failure }
     }
 
     /// The same in smaller batches where so many workers would otherwise not all have one.
@@ -362,10 +345,7 @@ impl Problem for Spread<'_> {
     fn residuals(&self, points: &[Vec<f64>]) -> Outcomes {
         self.outcomes(points).unwrap_or_else(|why| {
             let why = self.failure.get_or_init(|| why);
-            points
-                .iter()
-                .map(|_| Err(ModelError(why.clone())))
-                .collect()
+            points.iter().map(|_| Err(ModelError(why.clone()))).collect()
         })
     }
 

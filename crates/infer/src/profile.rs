@@ -18,10 +18,7 @@ pub const RISE_OF_95_PERCENT: f64 = 3.841_458_820_694_124;
 
 impl Default for Profiling {
     fn default() -> Self {
-        Self {
-            levels: vec![1.0, RISE_OF_95_PERCENT],
-            most_values: 60,
-        }
+        Self { levels: vec![1.0, RISE_OF_95_PERCENT], most_values: 60 }
     }
 }
 
@@ -96,10 +93,7 @@ pub fn profile(
     which: &[usize],
     how: &Profiling,
 ) -> Result<Vec<Profile>, InferError> {
-    let sound = how
-        .levels
-        .iter()
-        .all(|level| *level > 0.0 && level.is_finite());
+    let sound = how.levels.iter().all(|level| *level > 0.0 && level.is_finite());
     if !sound || how.levels.is_empty() || !how.levels.is_sorted() {
         let levels = &how.levels;
         return InferError::input(format!("levels {levels:?} must be positive and ascending"));
@@ -119,9 +113,8 @@ pub fn profile(
 /// One round: a value for each walk that is not at its end; whether there was any.
 fn walk_on(problem: &dyn Problem, fit: &Fit, walks: &mut [Walk]) -> Result<bool, InferError> {
     let merit = Merit::new(problem, fit.loss);
-    let mut going: Vec<(&mut Walk, Vec<f64>)> = (walks.iter_mut())
-        .filter_map(|walk| walk.next().map(|point| (walk, point)))
-        .collect();
+    let mut going: Vec<(&mut Walk, Vec<f64>)> =
+        (walks.iter_mut()).filter_map(|walk| walk.next().map(|point| (walk, point))).collect();
     let limits = Fitting::default().limits();
     let mut descents: Vec<Descent<'_>> = (going.iter())
         .map(|(walk, point)| {
@@ -137,10 +130,7 @@ fn walk_on(problem: &dyn Problem, fit: &Fit, walks: &mut [Walk]) -> Result<bool,
             let point = reached.point;
             return Err(InferError::BetterFit { point, by: -rise });
         }
-        let found = reached
-            .ending()
-            .converged()
-            .then_some((reached.point, rise));
+        let found = reached.ending().converged().then_some((reached.point, rise));
         walk.take(found);
     }
     Ok(!going.is_empty())
@@ -157,11 +147,7 @@ fn joined(pair: &[Walk], how: &Profiling) -> Profile {
         rise: all.iter().map(|met| met.rise).collect(),
         points: all.iter().map(|met| met.point.clone()).collect(),
         intervals: levels
-            .map(|(i, level)| Interval {
-                level: *level,
-                lower: down.end(i),
-                upper: up.end(i),
-            })
+            .map(|(i, level)| Interval { level: *level, lower: down.end(i), upper: up.end(i) })
             .collect(),
     }
 }
@@ -231,10 +217,7 @@ impl Walk {
         let tangent = row.iter().map(|c| if known { c / (sd * sd) } else { 0.0 });
         Self {
             parameter,
-            met: vec![Met {
-                point: fit.point.clone(),
-                rise: 0.0,
-            }],
+            met: vec![Met { point: fit.point.clone(), rise: 0.0 }],
             side,
             levels: how.levels.clone(),
             bounds: parameters.iter().map(|p| (p.lower, p.upper)).collect(),
@@ -278,11 +261,7 @@ impl Walk {
         let (distance, height) = self.last();
         let goal = BEYOND * self.levels.last().copied().unwrap_or(1.0).sqrt();
         let (lower, upper) = self.bounds[self.parameter];
-        let room = if self.side > 0.0 {
-            upper - self.optimum()
-        } else {
-            self.optimum() - lower
-        };
+        let room = if self.side > 0.0 { upper - self.optimum() } else { self.optimum() - lower };
         self.stop = match () {
             () if height >= goal => Some(Stop::Risen),
             () if distance >= room => Some(Stop::Bound),
@@ -293,9 +272,7 @@ impl Walk {
         if self.stop.is_some() {
             return None;
         }
-        let limit = self
-            .failing
-            .map_or(f64::INFINITY, |fails| 0.5 * (distance + fails));
+        let limit = self.failing.map_or(f64::INFINITY, |fails| 0.5 * (distance + fails));
         Some((distance + self.step()).min(room).min(limit))
     }
 
@@ -334,9 +311,7 @@ impl Walk {
     fn bracket(&self, level: usize) -> Option<((f64, f64), (f64, f64))> {
         let goal = self.levels[level].sqrt();
         let pairs = self.heights().zip(self.heights().skip(1));
-        pairs
-            .into_iter()
-            .find(|(near, far)| near.1 < goal && far.1 >= goal)
+        pairs.into_iter().find(|(near, far)| near.1 < goal && far.1 >= goal)
     }
 
     /// All parameters where a descent for this distance starts.

@@ -12,10 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 type Decay = Curve<fn(&[f64], f64) -> f64>;
 
 fn toy() -> Decay {
-    let free = vec![
-        Parameter::new("height", "", 1.0),
-        Parameter::new("rate", "", 1.0),
-    ];
+    let free = vec![Parameter::new("height", "", 1.0), Parameter::new("rate", "", 1.0)];
     Curve::drawn(free, &spaced(0.0, 3.0, 9), 0.1, &[4.0, 0.8], 5, decay)
 }
 
@@ -59,11 +56,7 @@ fn every_worker_has_a_batch_where_there_are_points_for_it() {
         };
         let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), size, &compute);
         let found = spread.among(workers).residuals(&points);
-        assert_eq!(
-            cut.into_inner(),
-            batches,
-            "{size} points, {workers} workers"
-        );
+        assert_eq!(cut.into_inner(), batches, "{size} points, {workers} workers");
         let expected = problem.residuals(&points);
         for (one, other) in found.iter().zip(&expected) {
             let (one, other) = (one.as_ref().unwrap(), other.as_ref().unwrap());
@@ -106,14 +99,8 @@ fn a_batch_of_shots_has_the_bits_of_the_points_alone_and_a_name_of_its_inputs() 
     };
     let one = problem(1, 1e-5);
     let starts: Vec<f64> = one.parameters().iter().map(|p| p.start).collect();
-    let points: Vec<Vec<f64>> = (0..5)
-        .map(|i| {
-            starts
-                .iter()
-                .map(|x| x * (1.0 + 0.02 * f64::from(i)))
-                .collect()
-        })
-        .collect();
+    let points: Vec<Vec<f64>> =
+        (0..5).map(|i| starts.iter().map(|x| x * (1.0 + 0.02 * f64::from(i))).collect()).collect();
     let together = one.residuals(&points);
     let names = |of: &CurveProblem, points: &[Vec<f64>]| {
         let batches = Batch::cut(&of.fingerprint(), points, 2);

@@ -1,9 +1,5 @@
 //! What the data cannot determine apart, which model they support, what to measure next.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
@@ -20,8 +16,7 @@ fn a_product_is_one_number_and_the_words_say_so() {
     // y = K A x with K = Y k: of three factors, one product is known.
     let free = [("Y", 200.0), ("nu", 0.3), ("eta", 3.0)];
     let data = Curve::drawn(
-        free.map(|(name, start)| Parameter::new(name, "", start))
-            .to_vec(),
+        free.map(|(name, start)| Parameter::new(name, "", start)).to_vec(),
         &spaced(1.0, 2.0, 9),
         0.02,
         &[210.0, 0.3, 3.0],
@@ -30,33 +25,19 @@ fn a_product_is_one_number_and_the_words_say_so() {
     );
     let found = fit_result(&data);
     let reported = Identifiability::new(&data.parameters, &found, |i| data.residual_label(i));
-    assert_eq!(
-        (reported.determined(), reported.unidentifiable.len()),
-        (1, 2)
-    );
+    assert_eq!((reported.determined(), reported.unidentifiable.len()), (1, 2));
     for confusion in &reported.unidentifiable {
         assert!(confusion.standard_error.is_infinite());
         // In a combination that leaves a product, relative changes sum to 0;
         // rounding and the error of differences.
-        let sum: f64 = confusion
-            .change
-            .iter()
-            .zip(&found.point)
-            .map(|(c, p)| c / p)
-            .sum();
+        let sum: f64 = confusion.change.iter().zip(&found.point).map(|(c, p)| c / p).sum();
         assert!(sum.abs() < 1e-8, "{sum}");
         // The largest change is one percent.
-        let shares = confusion
-            .change
-            .iter()
-            .zip(&found.point)
-            .map(|(c, p)| (c / p).abs());
+        let shares = confusion.change.iter().zip(&found.point).map(|(c, p)| (c / p).abs());
         assert!((shares.fold(0.0, f64::max) - 0.01).abs() < 1e-12); // rounding
         assert!(confusion.effect.iter().all(|e| e.abs() < 1e-5));
         assert!(
-            confusion
-                .words
-                .contains("zero within the error of the derivatives"),
+            confusion.words.contains("zero within the error of the derivatives"),
             "{}",
             confusion.words
         );
@@ -66,11 +47,8 @@ fn a_product_is_one_number_and_the_words_say_so() {
         let y: f64 = found.point.iter().product::<f64>() * 0.01 * x / 0.02;
         y * y
     });
-    let ratio = found
-        .point
-        .iter()
-        .zip(&data.parameters)
-        .map(|(p, q)| (q.scale.max(p.abs()) / p).powi(2));
+    let ratio =
+        found.point.iter().zip(&data.parameters).map(|(p, q)| (q.scale.max(p.abs()) / p).powi(2));
     let expected = (size.sum::<f64>() * ratio.sum::<f64>()).sqrt();
     // Differences' error.
     assert!((reported.singular_values[0] / expected - 1.0).abs() < 1e-6);
@@ -93,11 +71,7 @@ fn weakly_determined_combinations_have_a_standard_error_in_words() {
     let reported = Identifiability::new(&data.parameters, &found, |i| format!("row {}", i + 1));
     assert_eq!(reported.unidentifiable.len(), 1);
     let confusion = &reported.unidentifiable[0];
-    assert!(
-        (1.0..3.0).contains(&confusion.standard_error),
-        "{}",
-        confusion.standard_error
-    );
+    assert!((1.0..3.0).contains(&confusion.standard_error), "{}", confusion.standard_error);
     assert!(confusion.words.contains("row ") && confusion.words.contains("% only"));
     // Up with the other down.
     assert!(confusion.change[0] * confusion.change[1] < 0.0);
@@ -111,14 +85,8 @@ fn polynomial(order: usize, seed: u64) -> impl Problem {
     let noise = normals(seed, 15);
     let names = ["c0", "c1", "c2", "c3"];
     Curve {
-        parameters: names[..=order]
-            .iter()
-            .map(|n| Parameter::new(n, "", 1.0))
-            .collect(),
-        y: x.iter()
-            .zip(&noise)
-            .map(|(x, e)| power(&truth, *x) + 0.2 * e)
-            .collect(),
+        parameters: names[..=order].iter().map(|n| Parameter::new(n, "", 1.0)).collect(),
+        y: x.iter().zip(&noise).map(|(x, e)| power(&truth, *x) + 0.2 * e).collect(),
         sigma: vec![0.2; 15],
         x,
         model: power,
@@ -155,11 +123,7 @@ fn the_right_model_is_supported_and_the_sentence_says_by_how_much() {
         .collect();
     let names = ["constant", "line", "parabola", "cubic"];
     let models: Vec<Compared> = (0..4)
-        .map(|i| Compared {
-            name: names[i],
-            fit: &fits[i],
-            cross_validation: Some(&crosses[i]),
-        })
+        .map(|i| Compared { name: names[i], fit: &fits[i], cross_validation: Some(&crosses[i]) })
         .collect();
     let found = compare(&models).unwrap();
     assert_eq!(found.order[0], 2);
@@ -167,24 +131,9 @@ fn the_right_model_is_supported_and_the_sentence_says_by_how_much() {
     assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12); // rounding
     assert!(found.sentence.contains("parabola"), "{}", found.sentence);
     let two = compare(&models[1..3]).unwrap();
-    assert!(
-        two.sentence
-            .starts_with("The data support parabola alone: line"),
-        "{}",
-        two.sentence
-    );
-    assert!(
-        two.sentence.contains("foretold better by it"),
-        "{}",
-        two.sentence
-    );
-    let Criteria {
-        aic,
-        aicc,
-        bic,
-        deviance,
-        ..
-    } = found.criteria[2];
+    assert!(two.sentence.starts_with("The data support parabola alone: line"), "{}", two.sentence);
+    assert!(two.sentence.contains("foretold better by it"), "{}", two.sentence);
+    let Criteria { aic, aicc, bic, deviance, .. } = found.criteria[2];
     assert_eq!(aic, deviance + 6.0);
     // 2 · 3 · 4/11 and 3 ln 15; rounding.
     assert!((aicc - aic - 24.0 / 11.0).abs() < 1e-12);
@@ -196,36 +145,15 @@ fn models_that_cannot_be_compared_are_named() {
     let (line, parabola) = (polynomial(1, 4), polynomial(2, 4));
     let (first, mut second) = (fit_result(&line), fit_result(&parabola));
     let refused = |second: &Fit| {
-        let of = |name, fit| Compared {
-            name,
-            fit,
-            cross_validation: None,
-        };
+        let of = |name, fit| Compared { name, fit, cross_validation: None };
         compare(&[of("line", &first), of("other", second)]).unwrap_err()
     };
     second.loss = Loss::Huber { scale: 1.0 };
-    assert!(
-        refused(&second)
-            .to_string()
-            .starts_with("other was fitted with a robust loss")
-    );
+    assert!(refused(&second).to_string().starts_with("other was fitted with a robust loss"));
     second.residuals.pop();
-    assert!(
-        refused(&second)
-            .to_string()
-            .starts_with("other was fitted to 14 numbers")
-    );
-    let alone = Compared {
-        name: "line",
-        fit: &first,
-        cross_validation: None,
-    };
-    assert!(
-        compare(&[alone])
-            .unwrap_err()
-            .to_string()
-            .contains("two models")
-    );
+    assert!(refused(&second).to_string().starts_with("other was fitted to 14 numbers"));
+    let alone = Compared { name: "line", fit: &first, cross_validation: None };
+    assert!(compare(&[alone]).unwrap_err().to_string().contains("two models"));
 }
 
 #[test]
@@ -233,26 +161,12 @@ fn folds_keep_groups_together_and_follow_the_seed() {
     let data = polynomial(2, 4);
     let found = fit_result(&data);
     let pairs: Vec<usize> = (0..15).map(|row| row / 2).collect();
-    let how = |parts, seed| Folding {
-        groups: pairs.clone(),
-        parts,
-        seed,
-    };
-    assert_eq!(
-        cross_validate(&data, &found, &how(None, 0)).unwrap().folds,
-        8
-    );
+    let how = |parts, seed| Folding { groups: pairs.clone(), parts, seed };
+    assert_eq!(cross_validate(&data, &found, &how(None, 0)).unwrap().folds, 8);
     let five = |seed| cross_validate(&data, &found, &how(Some(4), seed)).unwrap();
     assert_eq!(five(1), five(1));
     assert_ne!(five(1).rows, five(2).rows);
-    for wrong in [
-        how(Some(1), 0),
-        how(Some(9), 0),
-        Folding {
-            groups: vec![0],
-            ..how(None, 0)
-        },
-    ] {
+    for wrong in [how(Some(1), 0), how(Some(9), 0), Folding { groups: vec![0], ..how(None, 0) }] {
         let error = cross_validate(&data, &found, &wrong).unwrap_err();
         assert!(error.to_string().starts_with("number of "), "{error}");
     }
@@ -274,11 +188,8 @@ fn designs_rank_by_what_linear_regression_would_gain() {
     let x = spaced(0.0, 1.0, 5);
     let data = Curve::drawn(free, &x, 0.2, &[1.0, 1.0], 3, straight);
     let found = fit_result(&data);
-    let candidates = [
-        candidate("middle", 0.5, 1.0),
-        candidate("far", 3.0, 1.0),
-        candidate("dear", 4.0, 3.0),
-    ];
+    let candidates =
+        [candidate("middle", 0.5, 1.0), candidate("far", 3.0, 1.0), candidate("dear", 4.0, 3.0)];
     let reported = design(&data.parameters, &found, &candidates, &[1], 3).unwrap();
     let slope_sd = |extra: &[f64]| {
         let all: Vec<f64> = x.iter().chain(extra).copied().collect();
@@ -298,12 +209,7 @@ fn designs_rank_by_what_linear_regression_would_gain() {
     // The middle adds nothing to a slope.
     assert!(reported.ranked[2].gain.abs() < 1e-7);
     assert_eq!(reported.greedy[0].candidate, 1);
-    assert!(
-        reported
-            .greedy
-            .windows(2)
-            .all(|pair| pair[1].after[0] < pair[0].after[0])
-    );
+    assert!(reported.greedy.windows(2).all(|pair| pair[1].after[0] < pair[0].after[0]));
 }
 
 #[test]
@@ -379,24 +285,15 @@ fn a_design_ranks_for_what_can_be_determined_where_parameters_can_not() {
     assert_eq!(reported.ranked[0].candidate, 1);
     // (a + 2b)/√5 to 1/(√5 · 3e7), the data's share of that and a, b off 1 left out.
     let exact = 1.0 / (5.0_f64.sqrt() * 3e7);
-    assert!(
-        (reported.ranked[0].after[0] / exact - 1.0).abs() < 5e-3,
-        "{reported:?}"
-    );
+    assert!((reported.ranked[0].after[0] / exact - 1.0).abs() < 5e-3, "{reported:?}");
     assert!(reported.before[0].is_finite());
 }
 
 #[test]
 fn a_design_around_no_minimum_is_refused() {
     let (data, found) = product();
-    let stuck = Fit {
-        ending: Ending::Stuck { expected_fall: 9.0 },
-        ..found
-    };
+    let stuck = Fit { ending: Ending::Stuck { expected_fall: 9.0 }, ..found };
     let alone = candidate("alone", 1.0, 1.0);
     let refused = design(&data.parameters, &stuck, &[alone], &[0], 1).unwrap_err();
-    assert!(
-        refused.to_string().contains("found no minimum"),
-        "{refused}"
-    );
+    assert!(refused.to_string().contains("found no minimum"), "{refused}");
 }

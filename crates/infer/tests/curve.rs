@@ -9,9 +9,7 @@ use hertzchain_sim::{Plan, shoot};
 const SPEEDS_M_S: [f64; 4] = [0.1, 0.25, 0.6, 1.2];
 
 fn model(experiment: &Experiment, names: &[&str]) -> Model {
-    let numbers = names
-        .iter()
-        .map(|name| FreeNumber::find(experiment, name, None).unwrap());
+    let numbers = names.iter().map(|name| FreeNumber::find(experiment, name, None).unwrap());
     Model::new(experiment, FreeNumbers::new(numbers.collect()).unwrap()).unwrap()
 }
 
@@ -25,10 +23,8 @@ fn table(model: &Model, point: &[f64], moved: f64, speed_error: f64) -> Data {
         .to_owned();
     for (speed, row) in SPEEDS_M_S.iter().zip(&curve) {
         let (incident, reflected) = (row[0].unwrap(), row[1].unwrap());
-        text += &format!(
-            "{speed},{speed_error},{},1e-7,{reflected},2e-7\n",
-            incident + moved * 1e-7
-        );
+        text +=
+            &format!("{speed},{speed_error},{},1e-7,{reflected},2e-7\n", incident + moved * 1e-7);
     }
     Data::parse("made", &text, &Selection::default()).unwrap()
 }
@@ -52,14 +48,8 @@ fn a_curve_is_that_of_shots_one_by_one() {
             let flight = shoot(&plan.with_accuracy(1e-9)).unwrap().flight.unwrap();
             // The accuracy that fits promise of dry chains; docs/explanation/numerics.md.
             let close = |one: f64, two: f64| (one / two - 1.0).abs() < 2e-6;
-            assert!(
-                close(row[0].unwrap(), flight.incident_s),
-                "{point:?} {speed}"
-            );
-            assert!(
-                close(row[1].unwrap(), flight.reflected_s.unwrap()),
-                "{point:?} {speed}"
-            );
+            assert!(close(row[0].unwrap(), flight.incident_s), "{point:?} {speed}");
+            assert!(close(row[1].unwrap(), flight.reflected_s.unwrap()), "{point:?} {speed}");
         }
     }
 }
@@ -68,9 +58,7 @@ fn a_curve_is_that_of_shots_one_by_one() {
 fn bits_of_a_point_depend_on_no_neighbour() {
     let model = model(&preset("dry").unwrap(), &["eta", "B"]);
     let speeds = Speeds::of_rows(&SPEEDS_M_S);
-    let points: Vec<Vec<f64>> = (0..7)
-        .map(|i| vec![3e4 + 1e3 * f64::from(i), 70.0])
-        .collect();
+    let points: Vec<Vec<f64>> = (0..7).map(|i| vec![3e4 + 1e3 * f64::from(i), 70.0]).collect();
     let together = model.curves(&points, &speeds);
     for (point, curve) in points.iter().zip(together) {
         assert_eq!(model.curves(std::slice::from_ref(point), &speeds)[0], curve);
@@ -83,10 +71,7 @@ fn a_point_that_physics_refuses_is_an_error_of_its_own() {
     let curves = model.curves(&[vec![0.3], vec![1.5], vec![0.2]], &Speeds::of_rows(&[0.5]));
     assert!(curves[0].is_ok() && curves[2].is_ok());
     let error = curves[1].clone().unwrap_err().to_string();
-    assert!(
-        error.contains("0.5 m/s") && error.contains("1.5"),
-        "{error}"
-    );
+    assert!(error.contains("0.5 m/s") && error.contains("1.5"), "{error}");
 }
 
 #[test]
@@ -114,10 +99,8 @@ fn an_error_of_the_speed_widens_by_the_slope_of_the_curve() {
         table(&model, &[213e9], 0.0, 0.001).only(&[hertzchain_infer::Observable::Incident]),
     );
     let residuals = problem.residuals(&[vec![213e9]])[0].clone().unwrap();
-    for ((speed, row), ln_sigma) in SPEEDS_M_S
-        .iter()
-        .zip(&problem.data().rows)
-        .zip(&residuals.ln_sigmas)
+    for ((speed, row), ln_sigma) in
+        SPEEDS_M_S.iter().zip(&problem.data().rows).zip(&residuals.ln_sigmas)
     {
         let time = row.values[0].unwrap().value;
         let sigma = (0.2 * time * 0.001 / speed).hypot(1e-7);

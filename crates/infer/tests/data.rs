@@ -15,10 +15,7 @@ fn refused(rows: &str) -> String {
 
 #[test]
 fn rows_come_in_order_of_speed_with_the_line_they_stood_in() {
-    let data = parse(&format!(
-        "# made\n{HEAD}1.0,0.001,6e-4,1e-7\n0.5,0.001,7e-4,1e-7\n"
-    ))
-    .unwrap();
+    let data = parse(&format!("# made\n{HEAD}1.0,0.001,6e-4,1e-7\n0.5,0.001,7e-4,1e-7\n")).unwrap();
     let lines: Vec<u64> = data.rows.iter().map(|row| row.line).collect();
     assert_eq!((lines, data.speeds_m_s()), (vec![4, 3], vec![0.5, 1.0]));
     let incident = data.rows[0].value(Observable::Incident).unwrap();
@@ -43,10 +40,7 @@ fn mistakes_name_their_row_and_column() {
         ),
         ("-0.5,0,7e-4,1e-7\n", "line 2, speed_m_s: -0.5 is no speed"),
         ("500,0,7e-4,1e-7\n", "looks like mm/s"),
-        (
-            "0.5,0,7e-4,0\n",
-            "line 2, tof_incident_s_error: 0 is no uncertainty",
-        ),
+        ("0.5,0,7e-4,0\n", "line 2, tof_incident_s_error: 0 is no uncertainty"),
         ("0.5,0,7e-4,-1e-7\n", "-0.0000001 is no uncertainty"),
         ("0.5,0,7e-4,\n", "no uncertainty of this incident ToF"),
         (
@@ -54,10 +48,7 @@ fn mistakes_name_their_row_and_column() {
             "line 2, tof_incident_s: 700 s is no incident ToF; it looks like microseconds",
         ),
         ("0.5,0,0.7,1e-3\n", "it looks like milliseconds"),
-        (
-            "0.5,0,7e-4,0.5\n",
-            "the uncertainty 0.5 s is larger than the value",
-        ),
+        ("0.5,0,7e-4,0.5\n", "the uncertainty 0.5 s is larger than the value"),
         ("0.5,0,NaN,1e-7\n", "NaN is no incident ToF"),
         ("0.5,0,quick,1e-7\n", "`quick` is no number"),
         (",0,7e-4,1e-7\n", "no speed"),
@@ -87,15 +78,9 @@ fn a_missing_column_is_named_with_what_stands_in_its_place() {
     let error = parse("speed_m_s,tof_us\n0.5,700\n").unwrap_err();
     assert!(error.contains("`tof_us` is not read"), "{error}");
     let error = parse("speed_m_s,tof_incident_s\n0.5,7e-4\n").unwrap_err();
-    assert!(
-        error.contains("tof_incident_s_error") && error.contains("--tof-error"),
-        "{error}"
-    );
+    assert!(error.contains("tof_incident_s_error") && error.contains("--tof-error"), "{error}");
     let selection = Selection {
-        defaults: Defaults {
-            time_s: Some(1e-7),
-            ..Defaults::default()
-        },
+        defaults: Defaults { time_s: Some(1e-7), ..Defaults::default() },
         ..Selection::default()
     };
     let text = "speed_m_s,tof_incident_s\n0.5,7e-4\n";
@@ -108,29 +93,15 @@ fn one_of_several_cases_must_be_chosen() {
     let text = "case,speed_m_s,tof_incident_s,tof_incident_s_error\ndry,0.5,7e-4,1e-7\npump,0.5,6.9e-4,1e-7\n";
     let of = |case: Option<&str>| {
         let case = case.map(str::to_owned);
-        let selection = Selection {
-            case,
-            ..Selection::default()
-        };
+        let selection = Selection { case, ..Selection::default() };
         Data::parse("a.csv", text, &selection)
     };
     let error = of(None).unwrap_err().to_string();
-    assert!(
-        error.contains("--case") && error.contains("dry, pump"),
-        "{error}"
-    );
-    assert!(
-        of(Some("gear"))
-            .unwrap_err()
-            .to_string()
-            .contains("no case `gear`")
-    );
+    assert!(error.contains("--case") && error.contains("dry, pump"), "{error}");
+    assert!(of(Some("gear")).unwrap_err().to_string().contains("no case `gear`"));
     // A table without cases takes the case of its model.
     let case = Some("pump".to_owned());
-    let selection = Selection {
-        case,
-        ..Selection::default()
-    };
+    let selection = Selection { case, ..Selection::default() };
     let plain = Data::parse("a.csv", &format!("{HEAD}0.5,0,7e-4,1e-7\n"), &selection).unwrap();
     assert_eq!((plain.case.as_str(), plain.rows.len()), ("pump", 1));
     let pump = of(Some("pump")).unwrap();
@@ -157,9 +128,6 @@ fn the_correlation_is_that_of_the_times_that_are_read() {
     assert_eq!(without.lines_without_correlation(), [2]);
     for wrong in ["1", "-1.5", "nan"] {
         let reported = read(&format!("{head}\n{row}{wrong}\n")).unwrap_err();
-        assert!(
-            reported.to_string().contains("tof_correlation"),
-            "{reported}"
-        );
+        assert!(reported.to_string().contains("tof_correlation"), "{reported}");
     }
 }

@@ -18,10 +18,7 @@ fn refused(name: &str, asked: &str) -> String {
 fn short_names_and_paths_name_the_same_numbers() {
     let one = |name: &str, value: f64| vec![(name.to_owned(), value)];
     assert_eq!(starts("dry", "eta"), one("eta", 3.2e4));
-    assert_eq!(
-        starts("dry", "shear_viscosity"),
-        one("shear_viscosity", 3.2e4)
-    );
+    assert_eq!(starts("dry", "shear_viscosity"), one("shear_viscosity", 3.2e4));
     assert_eq!(starts("dry", "B"), one("B", 77.0));
     assert_eq!(starts("pump", "pump-oil.Y"), one("pump-oil.Y", 216e9));
     assert_eq!(starts("pump", "dry.B"), one("dry.B", 77.0));
@@ -44,10 +41,8 @@ fn stiffness_and_relaxation_time_start_where_the_materials_put_them() {
 
 #[test]
 fn laws_of_speed_stay_laws_and_become_one_value_a_speed_if_asked() {
-    let law = vec![
-        ("wet.eta.prefactor".to_owned(), 81405.3),
-        ("wet.eta.exponent".to_owned(), -0.302),
-    ];
+    let law =
+        vec![("wet.eta.prefactor".to_owned(), 81405.3), ("wet.eta.exponent".to_owned(), -0.302)];
     assert_eq!(starts("pump", "wet.eta"), law);
     let each = starts("pump", "wet.eta:each");
     let expected = 81405.3 * 0.1_f64.powf(-0.302);
@@ -59,33 +54,21 @@ fn laws_of_speed_stay_laws_and_become_one_value_a_speed_if_asked() {
         parameters.into_iter().map(|p| p.name).collect()
     };
     assert_eq!(named(&[0.084271312, 1.23]), ["eta@0.08427", "eta@1.23"]);
-    assert_eq!(
-        named(&[0.500001, 0.500002]),
-        ["eta@0.500001", "eta@0.500002"]
-    );
+    assert_eq!(named(&[0.500001, 0.500002]), ["eta@0.500001", "eta@0.500002"]);
     let number = FreeNumber::find(&preset("dry").unwrap(), "K:power", None).unwrap();
-    assert_eq!(
-        (number.form(), number.parameters(&[]).len()),
-        (Form::PowerLaw, 2)
-    );
+    assert_eq!((number.form(), number.parameters(&[]).len()), (Form::PowerLaw, 2));
 }
 
 #[test]
 fn what_can_not_be_free_is_told_with_what_could() {
     let ambiguous = refused("pump", "eta");
-    assert!(
-        ambiguous.contains("aisi316.eta") && ambiguous.contains("pump-oil.eta"),
-        "{ambiguous}"
-    );
+    assert!(ambiguous.contains("aisi316.eta") && ambiguous.contains("pump-oil.eta"), "{ambiguous}");
     let ambiguous = refused("pump", "K");
     assert!(
         ambiguous.contains("contacts[0].K") && ambiguous.contains("contacts[1].K"),
         "{ambiguous}"
     );
-    assert_eq!(
-        refused("hertz", "B"),
-        "B: this experiment has no cubic damping"
-    );
+    assert_eq!(refused("hertz", "B"), "B: this experiment has no cubic damping");
     assert!(refused("dry", "preload").contains("[near_end]"));
     assert!(refused("dry", "young_modulu").contains("did you mean"));
     assert!(refused("dry", "beads[0].count").contains("counts something"));
@@ -105,18 +88,10 @@ fn a_law_as_parameters_is_the_law_of_the_file() {
     let point: Vec<f64> = numbers.parameters(&[]).iter().map(|p| p.start).collect();
     assert_eq!(point, [81405.3, -0.302, 0.314, -0.274]);
     let speeds = Speeds::of_rows(&[0.3, 0.9]);
-    let free = Model::new(&pump, numbers)
-        .unwrap()
-        .curves(&[point], &speeds);
+    let free = Model::new(&pump, numbers).unwrap().curves(&[point], &speeds);
     let none = FreeNumbers::new(Vec::new()).unwrap();
-    let fixed = Model::new(&pump, none)
-        .unwrap()
-        .curves(&[Vec::new()], &speeds);
-    let both = free[0]
-        .clone()
-        .unwrap()
-        .into_iter()
-        .zip(fixed[0].clone().unwrap());
+    let fixed = Model::new(&pump, none).unwrap().curves(&[Vec::new()], &speeds);
+    let both = free[0].clone().unwrap().into_iter().zip(fixed[0].clone().unwrap());
     for (free, fixed) in both {
         // v^b computed by us or by the experiment: the same digits but the last,
         // which a row of 40 contacts may make ten thousand times as large.

@@ -11,13 +11,7 @@ const SPEEDS_M_S: [f64; 3] = [0.2, 0.5, 1.2];
 fn gauge(wet: Data, seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains {
-        dry: &dry_model,
-        wet: &wet_model,
-        free: &free,
-        own: &[],
-        accuracy: 1e-5,
-    };
+    let chains = Chains { dry: &dry_model, wet: &wet_model, free: &free, own: &[], accuracy: 1e-5 };
     let dry = Truth::of(&dry_model, &SPEEDS_M_S).measured(seed);
     Gauge::new(&chains, dry, wet).unwrap()
 }
@@ -36,23 +30,15 @@ fn the_tables_oils_are_those_of_the_presets() {
             let (k, a) = oil.contact(pair.radius_m, speed);
             // v^b computed twice: rounding.
             assert!((k / pair.hertz_stiffness() - 1.0).abs() < 1e-12, "{name}");
-            assert!(
-                (a / pair.left.relaxation_time_s() - 1.0).abs() < 1e-12,
-                "{name}"
-            );
+            assert!((a / pair.left.relaxation_time_s() - 1.0).abs() < 1e-12, "{name}");
         }
     }
 }
 
 #[test]
 fn each_oil_is_recognised_and_the_others_rejected() {
-    for (seed, (name, called)) in [
-        ("motor", "motor oil"),
-        ("gear", "gear oil"),
-        ("pump", "pump oil"),
-    ]
-    .into_iter()
-    .enumerate()
+    for (seed, (name, called)) in
+        [("motor", "motor oil"), ("gear", "gear oil"), ("pump", "pump oil")].into_iter().enumerate()
     {
         let gauge = gauge(wet(&preset(name).unwrap(), seed as u64), seed as u64);
         let verdict = gauge.verdict(&known_oils().unwrap()).unwrap();
@@ -65,23 +51,13 @@ fn each_oil_is_recognised_and_the_others_rejected() {
 
 #[test]
 fn an_unknown_oil_is_none_of_these_until_it_has_a_row() {
-    let unknown = preset("motor")
-        .unwrap()
-        .set(&[("motor-oil.young_modulus", 205e9)])
-        .unwrap();
+    let unknown = preset("motor").unwrap().set(&[("motor-oil.young_modulus", 205e9)]).unwrap();
     let gauge = gauge(wet(&unknown, 7), 7);
     let mut table = known_oils().unwrap();
     let verdict = gauge.verdict(&table).unwrap();
-    assert!(
-        verdict.sentence().starts_with("None of these"),
-        "{}",
-        verdict.sentence()
-    );
+    assert!(verdict.sentence().starts_with("None of these"), "{}", verdict.sentence());
     let mut row = table[0].clone();
-    if let Description::Material {
-        young_modulus_pa, ..
-    } = &mut row.description
-    {
+    if let Description::Material { young_modulus_pa, .. } = &mut row.description {
         *young_modulus_pa = 205e9;
     }
     row.name = "mine".to_owned();
@@ -105,13 +81,7 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
         data.only(&[Observable::Incident])
     };
     let said = |own: &[String]| {
-        let chains = Chains {
-            dry: &dry_model,
-            wet: &wet_model,
-            free: &free,
-            own,
-            accuracy: 1e-5,
-        };
+        let chains = Chains { dry: &dry_model, wet: &wet_model, free: &free, own, accuracy: 1e-5 };
         let gauge = Gauge::new(&chains, measured(&dry_model, 11), measured(&held, 12)).unwrap();
         let verdict = gauge.verdict(&known_oils().unwrap()).unwrap();
         (verdict.sentence(), gauge.doubts(&verdict))
@@ -129,13 +99,7 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
 fn a_wet_curve_in_the_dry_ones_place_is_told() {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains {
-        dry: &dry_model,
-        wet: &wet_model,
-        free: &free,
-        own: &[],
-        accuracy: 1e-5,
-    };
+    let chains = Chains { dry: &dry_model, wet: &wet_model, free: &free, own: &[], accuracy: 1e-5 };
     let reported = |[dry, wet]: [&Experiment; 2]| {
         let gauge = Gauge::new(
             &chains,
@@ -146,10 +110,7 @@ fn a_wet_curve_in_the_dry_ones_place_is_told() {
         gauge.doubts(&gauge.verdict(&[]).unwrap())
     };
     let swapped = reported([&wet_model, &dry_model]).unwrap();
-    assert!(
-        swapped.contains("--dry names the curve of the dry chain"),
-        "{swapped}"
-    );
+    assert!(swapped.contains("--dry names the curve of the dry chain"), "{swapped}");
     assert_eq!(reported([&dry_model, &wet_model]), None);
 }
 
@@ -170,10 +131,7 @@ fn with_loads_of_their_own_the_advice_is_to_leave_returns_out() {
     let [motor, pump] = [0, 2].map(|at| known_oils().unwrap().remove(at));
     let doubts = |oil| gauge.doubts(&gauge.verdict(&[oil]).unwrap());
     let of_none = doubts(motor).unwrap();
-    assert!(
-        of_none.contains("leave the reflected ones out (--use incident)"),
-        "{of_none}"
-    );
+    assert!(of_none.contains("leave the reflected ones out (--use incident)"), "{of_none}");
     assert!(!of_none.contains("--own"), "{of_none}");
     assert_eq!(doubts(pump), None);
 }
@@ -201,11 +159,7 @@ fn stiffness_and_relaxation_time_come_back_speed_by_speed() {
 #[test]
 fn of_several_pairs_that_of_the_smooth_curve_is_taken() {
     let pump = preset("pump").unwrap();
-    let noise = Noise {
-        speed_m_s: 1e-5,
-        time_s: 1e-8,
-        correlation: 0.0,
-    };
+    let noise = Noise { speed_m_s: 1e-5, time_s: 1e-8, correlation: 0.0 };
     let wet = Truth::of(&pump, &speeds_between(0.09, 0.6, 7)).measured_with(noise, 5);
     let gauge = gauge(wet, 5);
     let oil = known_oils().unwrap().remove(2);
@@ -215,11 +169,7 @@ fn of_several_pairs_that_of_the_smooth_curve_is_taken() {
         let exact = oil.contact(gauge.wet_radius_m(), row.speed_m_s).1.ln();
         let miss = |pair: &Pair| (pair.ln[1] - exact).abs();
         for other in &contact.others {
-            assert!(
-                miss(&contact.first) < miss(other),
-                "{}: {contact:?}",
-                row.speed_m_s
-            );
+            assert!(miss(&contact.first) < miss(other), "{}: {contact:?}", row.speed_m_s);
             smaller += usize::from(other.ln[1] < contact.first.ln[1]);
         }
     }
@@ -230,11 +180,7 @@ fn of_several_pairs_that_of_the_smooth_curve_is_taken() {
 #[test]
 fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_branch() {
     let pump = preset("pump").unwrap();
-    let noise = Noise {
-        speed_m_s: 1e-5,
-        time_s: 1e-8,
-        correlation: 0.0,
-    };
+    let noise = Noise { speed_m_s: 1e-5, time_s: 1e-8, correlation: 0.0 };
     let wet = Truth::of(&pump, &[0.0759, 0.0967, 0.1251]).measured_with(noise, 8);
     let gauge = gauge(wet, 8);
     let oil = known_oils().unwrap().remove(2);
@@ -250,16 +196,11 @@ fn the_true_pair_is_among_those_of_two_times_and_no_law_goes_through_an_open_bra
         assert!(contact.pairs().into_iter().any(is_true), "{row:?}");
         assert!(contact.scan.as_ref().unwrap().is_complete(), "{row:?}");
     }
-    let open = rows
-        .iter()
-        .filter(|row| !row.contact.as_ref().unwrap().is_known());
+    let open = rows.iter().filter(|row| !row.contact.as_ref().unwrap().is_known());
     assert!(open.count() > 0, "{rows:?}");
     assert!(GaugeLaws::through(&rows).is_err());
     let reported = gauge.ambiguous(&rows).unwrap();
-    assert!(
-        reported.contains("Branch ambiguous at 0.0759"),
-        "{reported}"
-    );
+    assert!(reported.contains("Branch ambiguous at 0.0759"), "{reported}");
 }
 
 /// A ratio of peaks beside both times: a third equation for two numbers.
@@ -268,31 +209,15 @@ fn a_row_that_no_pair_gives_is_told_as_such() {
     let pump = preset("pump").unwrap();
     let truth = Truth::of(&pump, &[0.0967]);
     let reported = |times: f64| {
-        let noise = Noise {
-            speed_m_s: 1e-5,
-            time_s: 1e-8,
-            correlation: 0.0,
-        };
+        let noise = Noise { speed_m_s: 1e-5, time_s: 1e-8, correlation: 0.0 };
         let mut wet = truth.measured_with(noise, 9);
         let ratio = times * truth.curve[0][3].unwrap();
-        wet.rows[0].values[3] = Some(Estimate {
-            value: ratio,
-            sigma: 0.005 * ratio,
-        });
+        wet.rows[0].values[3] = Some(Estimate { value: ratio, sigma: 0.005 * ratio });
         gauge(wet, 9).rows().remove(0).contact
     };
     let contact = reported(1.0).unwrap();
-    let (_, a) = known_oils()
-        .unwrap()
-        .remove(2)
-        .contact(6.35e-3 / 2.0, 0.0967);
-    assert!(
-        contact
-            .pairs()
-            .iter()
-            .any(|pair| (pair.ln[1] - a.ln()).abs() < 0.1),
-        "{contact:?}"
-    );
+    let (_, a) = known_oils().unwrap().remove(2).contact(6.35e-3 / 2.0, 0.0967);
+    assert!(contact.pairs().iter().any(|pair| (pair.ln[1] - a.ln()).abs() < 0.1), "{contact:?}");
     let why = reported(3.0).unwrap_err();
     assert!(why.contains("does not follow"), "{why}");
 }
@@ -309,11 +234,7 @@ fn incident_times_alone_tell_one_combination_and_what_to_add() {
         let exact = k.ln() + combination.exponent * (a / combination.reference_s).ln();
         // The exponent is that at the dry A; to the pump oil's A, up to four times as
         // large, it bends the combination by some percent.
-        assert!(
-            (contact.first.ln[0] - exact).abs() < 0.1,
-            "{}: {combination:?}",
-            row.speed_m_s
-        );
+        assert!((contact.first.ln[0] - exact).abs() < 0.1, "{}: {combination:?}", row.speed_m_s);
     }
     assert!(gauge.to_add().unwrap().contains("reflected"));
 }
@@ -329,10 +250,7 @@ fn a_users_oil_may_be_given_by_its_contact() {
         ("mine,9e9,0,,", "expected either"),
         ("mine,fast,0,8e-7,0", "`fast` is no number"),
         ("mine,-1,0,8e-7,0", "expected more than 0"),
-        (
-            "mine,9e9,-0.1,8e-7,-0.2\nmine,8e9,,8e-7,",
-            "mine stands in the table twice",
-        ),
+        ("mine,9e9,-0.1,8e-7,-0.2\nmine,8e9,,8e-7,", "mine stands in the table twice"),
     ] {
         let text = text.replace("mine,9e9,-0.1,8e-7,-0.2", row);
         let error = oils("mine.csv", &text).unwrap_err().to_string();

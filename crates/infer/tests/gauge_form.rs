@@ -11,16 +11,10 @@ const MINE: [f64; 4] = [8.6e9, -0.03, 8.5e-7, -0.25];
 const INCIDENT: [Observable; 1] = [Observable::Incident];
 
 fn mine() -> Oil {
-    let law = |at: usize| Law {
-        prefactor: MINE[at],
-        exponent: MINE[at + 1],
-    };
+    let law = |at: usize| Law { prefactor: MINE[at], exponent: MINE[at + 1] };
     Oil {
         name: "mine".to_owned(),
-        description: Description::Contact {
-            stiffness: law(0),
-            relaxation_s: law(2),
-        },
+        description: Description::Contact { stiffness: law(0), relaxation_s: law(2) },
         source: String::new(),
     }
 }
@@ -28,13 +22,7 @@ fn mine() -> Oil {
 fn gauge(wet: Data, speeds: &[f64], seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains {
-        dry: &dry_model,
-        wet: &wet_model,
-        free: &free,
-        own: &[],
-        accuracy: 1e-5,
-    };
+    let chains = Chains { dry: &dry_model, wet: &wet_model, free: &free, own: &[], accuracy: 1e-5 };
     let dry = Truth::of(&dry_model, speeds).measured(seed);
     Gauge::new(&chains, dry, wet).unwrap()
 }
@@ -64,11 +52,7 @@ fn said(gauge: &Gauge, form: &PowerForm) -> String {
 }
 
 /// Times as the paper's, speeds known ten times better.
-const KNOWN_BETTER: Noise = Noise {
-    speed_m_s: 6.7e-5,
-    time_s: 1.1e-7,
-    correlation: 0.0,
-};
+const KNOWN_BETTER: Noise = Noise { speed_m_s: 6.7e-5, time_s: 1.1e-7, correlation: 0.0 };
 
 #[test]
 fn laws_come_back_from_incident_times_alone_where_speeds_are_known_well() {
@@ -84,10 +68,7 @@ fn laws_come_back_from_incident_times_alone_where_speeds_are_known_well() {
     // K at the middle of the speeds, where it is known best.
     let middle = form.at(0.3);
     let exact = MINE[0].ln() + MINE[1] * 0.3_f64.ln();
-    assert!(
-        (middle.ln[0] - exact).abs() < 3.5 * middle.ln_sd[0],
-        "{middle:?}"
-    );
+    assert!((middle.ln[0] - exact).abs() < 3.5 * middle.ln_sd[0], "{middle:?}");
     assert!(middle.ln_sd[0] < 0.03, "{middle:?}");
     // A is known to some fifth even so, which is too little to evaluate oils by.
     assert!(!form.is_sufficient());
@@ -103,11 +84,7 @@ fn incident_times_at_the_papers_noise_leave_a_valley_and_say_so() {
     let gauge = gauge(measured(&speeds, 103).only(&INCIDENT), &speeds, 4);
     let form = gauge.power_form().unwrap();
     assert!(!form.is_sufficient());
-    assert!(
-        form.doubts()
-            .unwrap()
-            .contains("do not determine both power laws")
-    );
+    assert!(form.doubts().unwrap().contains("do not determine both power laws"));
     let said = said(&gauge, &form);
     assert!(said.starts_with("It is mine"), "{said}");
 }
@@ -115,10 +92,7 @@ fn incident_times_at_the_papers_noise_leave_a_valley_and_say_so() {
 #[test]
 fn reflected_times_make_the_laws_tighter() {
     let speeds = speeds_m_s(8);
-    let (both, one) = (
-        measured(&speeds, 102),
-        measured(&speeds, 102).only(&INCIDENT),
-    );
+    let (both, one) = (measured(&speeds, 102), measured(&speeds, 102).only(&INCIDENT));
     let [both_gauge, one_gauge] = [both, one].map(|wet| gauge(wet, &speeds, 2));
     let [both, one] = [&both_gauge, &one_gauge].map(|gauge| gauge.power_form().unwrap());
     assert!(both.is_sufficient() && both.doubts().is_none(), "{both:?}");
@@ -127,12 +101,7 @@ fn reflected_times_make_the_laws_tighter() {
     for (pull, at) in pulls(&both).into_iter().zip(0..) {
         assert!(pull.abs() < 3.5, "{pull}: {both:?}");
         // By far: what incident times confuse, returns determine.
-        assert!(
-            both.sd()[at] < 0.5 * one.sd()[at],
-            "{:?} {:?}",
-            both.sd(),
-            one.sd()
-        );
+        assert!(both.sd()[at] < 0.5 * one.sd()[at], "{:?} {:?}", both.sd(), one.sd());
     }
 }
 

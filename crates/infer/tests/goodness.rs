@@ -10,10 +10,7 @@ fn the_largest_residual_names_the_number_that_is_off() {
     let truth = Truth::of(&dry, &speeds_m_s(8));
     let model = model(&dry, &["eta", "B"]);
     for correlation in [0.0, -0.5] {
-        let noise = Noise {
-            correlation,
-            ..Noise::of_the_paper()
-        };
+        let noise = Noise { correlation, ..Noise::of_the_paper() };
         // Named alone, and as the first of both, in twelve data sets.
         let mut named = [0; 2];
         for (seed, (of, name)) in (0..6).flat_map(|seed| TIMES.map(|time| (seed, time))) {
@@ -27,10 +24,7 @@ fn the_largest_residual_names_the_number_that_is_off() {
             let problem = problem(&model, data);
             let best = fit(&problem, &Fitting::default()).unwrap();
             let found = Goodness::new(&problem, &best).largest.unwrap();
-            assert!(
-                found.label.starts_with(&format!("line {line},")),
-                "{found:?}"
-            );
+            assert!(found.label.starts_with(&format!("line {line},")), "{found:?}");
             let first = found.label.split(" or ").next().unwrap();
             named[0] += usize::from(found.label.ends_with(name) && first == found.label);
             named[1] += usize::from(first.ends_with(name));

@@ -1,9 +1,5 @@
 //! A straight line, where everything has a closed form.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::toys::{Curve, regression, spaced, straight};
 use hertzchain_infer::{
@@ -13,18 +9,8 @@ use hertzchain_infer::{
 type Line = Curve<fn(&[f64], f64) -> f64>;
 
 fn line(seed: u64) -> Line {
-    let free = vec![
-        Parameter::new("a", "m", 1.0),
-        Parameter::new("b", "m/s", 1.0),
-    ];
-    Curve::drawn(
-        free,
-        &spaced(0.0, 4.0, 12),
-        0.3,
-        &[5.0, -2.0],
-        seed,
-        straight,
-    )
+    let free = vec![Parameter::new("a", "m", 1.0), Parameter::new("b", "m/s", 1.0)];
+    Curve::drawn(free, &spaced(0.0, 4.0, 12), 0.3, &[5.0, -2.0], seed, straight)
 }
 
 #[test]
@@ -54,15 +40,8 @@ fn profiles_of_a_line_are_parabolas_with_the_covariance_widths() {
     let covariance = Covariance::new(&data.parameters, &found);
     let profiles = profile(&data, &found, &covariance, &[0, 1], &Profiling::default()).unwrap();
     for profile in &profiles {
-        let (sd, best) = (
-            covariance.sd[profile.parameter],
-            found.point[profile.parameter],
-        );
-        for (interval, factor) in profile
-            .intervals
-            .iter()
-            .zip([1.0, RISE_OF_95_PERCENT.sqrt()])
-        {
+        let (sd, best) = (covariance.sd[profile.parameter], found.point[profile.parameter]);
+        for (interval, factor) in profile.intervals.iter().zip([1.0, RISE_OF_95_PERCENT.sqrt()]) {
             let [lower, upper] = [interval.lower, interval.upper].map(|e| e.closed().unwrap());
             // 1e-3 standard errors: the ends are found to no more.
             assert!(((upper - best) / sd - factor).abs() < 1e-3);
@@ -103,9 +82,7 @@ fn bounds_that_bind_are_named_and_the_rest_is_the_restricted_optimum() {
     data.parameters[1] = data.parameters[1].clone().within(-1.0, 3.0);
     let found = fit(&data, &Fitting::default()).unwrap();
     assert_eq!(found.point[1], -1.0);
-    let [binding] = found.binding[..] else {
-        panic!("one bound binds: {:?}", found.binding)
-    };
+    let [binding] = found.binding[..] else { panic!("one bound binds: {:?}", found.binding) };
     assert_eq!((binding.parameter, binding.bound), (1, -1.0));
     let covariance = Covariance::new(&data.parameters, &found);
     assert_eq!(covariance.held, [1]);

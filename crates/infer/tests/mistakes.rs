@@ -1,9 +1,5 @@
 //! Every mistake has a message that names what to change.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::toys::{Curve, spaced, straight};
 use hertzchain_infer::{
@@ -22,9 +18,7 @@ fn two() -> Vec<Parameter> {
 }
 
 fn refused(problem: &dyn Problem) -> InferError {
-    fit(problem, &Fitting::default())
-        .map(|found: Fit| found.point)
-        .unwrap_err()
+    fit(problem, &Fitting::default()).map(|found: Fit| found.point).unwrap_err()
 }
 
 #[test]
@@ -48,10 +42,7 @@ fn parameters_that_change_nothing_are_named() {
     let mut free = two();
     free.push(Parameter::new("nu", "", 0.3));
     let error = refused(&line(free, 5));
-    assert!(
-        error.to_string().starts_with("nu changes no residual"),
-        "{error}"
-    );
+    assert!(error.to_string().starts_with("nu changes no residual"), "{error}");
     let error = refused(&line(Vec::new(), 5)).to_string();
     assert!(error.starts_with("no parameter is free"), "{error}");
     let twice = vec![Parameter::new("a", "", 1.0), Parameter::new("a", "", 1.0)];
@@ -90,30 +81,11 @@ fn starts_bounds_scales_and_priors_must_agree() {
         (|p| p.lower = 2.0, "outside its bounds 2 to"),
         (|p| p.start = f64::NAN, "starts at NaN, outside its bounds"),
         (|p| p.upper = f64::NAN, "leave nothing between them"),
+        (|p| (p.lower, p.upper) = (3.0, 1.0), "leave nothing between them"),
+        (|p| p.scale = 0.0, "has the scale 0: expected a positive number"),
+        (|p| p.prior = Prior::Normal { mean: 0.0, sd: -1.0 }, "is no distribution"),
         (
-            |p| (p.lower, p.upper) = (3.0, 1.0),
-            "leave nothing between them",
-        ),
-        (
-            |p| p.scale = 0.0,
-            "has the scale 0: expected a positive number",
-        ),
-        (
-            |p| {
-                p.prior = Prior::Normal {
-                    mean: 0.0,
-                    sd: -1.0,
-                }
-            },
-            "is no distribution",
-        ),
-        (
-            |p| {
-                p.prior = Prior::LogNormal {
-                    median: 100.0,
-                    ln_sd: 0.1,
-                }
-            },
+            |p| p.prior = Prior::LogNormal { median: 100.0, ln_sd: 0.1 },
             "46.1 standard deviations from the middle of its prior",
         ),
     ];
@@ -130,10 +102,7 @@ fn residuals_that_are_no_numbers_name_their_row() {
     let mut data = line(two(), 5);
     data.sigma[3] = 0.0;
     let error = refused(&data).to_string();
-    assert!(
-        error.contains("residual 4") && error.contains("uncertainty"),
-        "{error}"
-    );
+    assert!(error.contains("residual 4") && error.contains("uncertainty"), "{error}");
     data.sigma[3] = 0.1;
     data.y[2] = f64::NAN;
     assert!(refused(&data).to_string().contains("residual 3"));
@@ -143,34 +112,18 @@ fn residuals_that_are_no_numbers_name_their_row() {
 fn options_out_of_range_are_refused() {
     let data = line(two(), 5);
     let wrong = [
-        Fitting {
-            starts: 0,
-            ..Fitting::default()
-        },
-        Fitting {
-            tolerance: 0.0,
-            ..Fitting::default()
-        },
-        Fitting {
-            loss: hertzchain_infer::Loss::Huber { scale: f64::NAN },
-            ..Fitting::default()
-        },
+        Fitting { starts: 0, ..Fitting::default() },
+        Fitting { tolerance: 0.0, ..Fitting::default() },
+        Fitting { loss: hertzchain_infer::Loss::Huber { scale: f64::NAN }, ..Fitting::default() },
     ];
     for how in wrong {
         let error = fit(&data, &how).unwrap_err().to_string();
         assert!(error.contains("expected"), "{error}");
     }
-    let hasty = Fitting {
-        iterations: 0,
-        ..Fitting::default()
-    };
+    let hasty = Fitting { iterations: 0, ..Fitting::default() };
     let found = fit(&data, &hasty).unwrap();
     assert!(!found.ending.converged());
-    assert!(
-        found.ending.to_string().contains("iterations"),
-        "{}",
-        found.ending
-    );
+    assert!(found.ending.to_string().contains("iterations"), "{}", found.ending);
 }
 
 /// A line whose model fails for some points, or returns too little.
@@ -186,8 +139,7 @@ impl<F: Fn(&[f64]) -> Option<Result<Residuals, ModelError>> + Sync> Problem for 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
         let sound = self.0.residuals(points);
         let all = points.iter().zip(sound);
-        all.map(|(point, found)| (self.1)(point).unwrap_or(found))
-            .collect()
+        all.map(|(point, found)| (self.1)(point).unwrap_or(found)).collect()
     }
 }
 
@@ -199,14 +151,8 @@ fn a_model_that_fails_somewhere_is_walked_around_and_one_that_fails_at_the_start
     let found = fit(&edge, &Fitting::default()).unwrap();
     assert!(found.ending.converged(), "{}", found.ending);
     let nowhere = Failing(line(two(), 9), |_: &[f64]| Some(crushed()));
-    assert!(
-        refused(&nowhere)
-            .to_string()
-            .contains("the bead is crushed")
-    );
-    let short = Failing(line(two(), 9), |_: &[f64]| {
-        Some(Ok(Residuals::new(vec![1.0])))
-    });
+    assert!(refused(&nowhere).to_string().contains("the bead is crushed"));
+    let short = Failing(line(two(), 9), |_: &[f64]| Some(Ok(Residuals::new(vec![1.0]))));
     assert!(refused(&short).to_string().contains("returned 1 residuals"));
 }
 
@@ -229,9 +175,7 @@ fn a_start_where_the_model_fails_is_told_with_its_values() {
         }
     }
     let free = vec![Parameter::new("Y", "Pa", 213.0)];
-    let reported = fit(&Fails(free), &Fitting::default())
-        .unwrap_err()
-        .to_string();
+    let reported = fit(&Fails(free), &Fitting::default()).unwrap_err().to_string();
     let expected = "no residuals at the start: with Y = 2.1300e2 Pa: beads overlap";
     assert!(reported.starts_with(expected), "{reported}");
     assert!(reported.contains("--start"), "{reported}");

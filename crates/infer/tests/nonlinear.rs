@@ -1,9 +1,5 @@
 //! Curved problems: where covariance and profile part, and what intervals are worth.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::toys::{Curve, decay, normals, spaced};
 use hertzchain_infer::{
@@ -152,10 +148,7 @@ fn intervals_that_the_data_leave_open_are_reported_open() {
     let (_, covariance, profiles) = profiled(&data);
     assert!(covariance.sd[0] > 10.0);
     let interval = profiles[0].intervals[0];
-    assert_eq!(
-        (interval.lower, interval.upper),
-        (End::Bound(0.5), End::Bound(10.0))
-    );
+    assert_eq!((interval.lower, interval.upper), (End::Bound(0.5), End::Bound(10.0)));
     // b ends where a meets its bounds: 2.05/10 and 2.05/0.5, and χ² of b alone
     // beyond: one standard error of the product, 0.07, over a.
     let interval = profiles[1].intervals[0];
@@ -183,21 +176,11 @@ fn a_profile_that_meets_a_better_fit_says_so() {
     let found = fit(&narrow, &Fitting::default()).unwrap();
     assert!(found.point[0] > 2.0);
     let covariance = Covariance::new(&narrow.parameters, &found);
-    let how = Profiling {
-        levels: vec![20.0],
-        ..Profiling::default()
-    };
+    let how = Profiling { levels: vec![20.0], ..Profiling::default() };
     let error = profile(&narrow, &found, &covariance, &[0], &how).unwrap_err();
-    assert!(
-        matches!(error, InferError::BetterFit { by, .. } if by > 0.1),
-        "{error}"
-    );
+    assert!(matches!(error, InferError::BetterFit { by, .. } if by > 0.1), "{error}");
     // Several starts find it at once.
-    let several = Fitting {
-        starts: 8,
-        seed: 1,
-        ..Fitting::default()
-    };
+    let several = Fitting { starts: 8, seed: 1, ..Fitting::default() };
     let mut spread = narrow;
     spread.parameters[0] = spread.parameters[0].clone().within(-6.0, 6.0);
     let best = fit(&spread, &several).unwrap();
@@ -209,9 +192,7 @@ fn a_profile_that_meets_a_better_fit_says_so() {
     // gains: it fits as well, and is reported once however many starts came to it.
     let sd = Covariance::new(&spread.parameters, &best).sd;
     let others = best.other_minima(&sd);
-    let [(other, count)] = others[..] else {
-        panic!("{others:?}")
-    };
+    let [(other, count)] = others[..] else { panic!("{others:?}") };
     assert!((2.8..3.0).contains(&other.point[0]), "{other:?}");
     let rise = 2.0 * (other.cost - best.cost);
     assert!((1.3..1.44).contains(&rise), "{rise}");
@@ -246,19 +227,13 @@ fn sigmas_that_depend_on_parameters_pay_for_their_width() {
         }
     }
     let y: Vec<f64> = normals(7, 40).iter().map(|e| 3.0 + 0.5 * e).collect();
-    let free = vec![
-        Parameter::new("mean", "", 1.0),
-        Parameter::new("width", "", 2.0).within(1e-3, 1e3),
-    ];
+    let free =
+        vec![Parameter::new("mean", "", 1.0), Parameter::new("width", "", 2.0).within(1e-3, 1e3)];
     let found = fit(&Width(free, y.clone()), &Fitting::default()).unwrap();
     let mean = y.iter().sum::<f64>() / 40.0;
     let square = y.iter().map(|y| (y - mean).powi(2)).sum::<f64>() / 40.0;
     assert!(found.ending.converged(), "{}", found.ending);
     // 4e-5 standard errors of 0.08 and 0.06; differences' (h/σ)² leave 1e-6 of the width.
     assert!((found.point[0] - mean).abs() < 1e-5);
-    assert!(
-        (found.point[1] - square.sqrt()).abs() < 1e-5,
-        "{:?}",
-        found.point
-    );
+    assert!((found.point[1] - square.sqrt()).abs() < 1e-5, "{:?}", found.point);
 }

@@ -49,10 +49,7 @@ fn law() -> [Vec<f64>; 4] {
     let measured = |at: usize| speeds[at] + x_sigma[at] * of_speed[at];
     let x: Vec<f64> = (0..12).map(measured).collect();
     let times = speeds.iter().map(|v| 6.5e-4 * v.powf(-0.2));
-    let y: Vec<f64> = times
-        .zip(of_time)
-        .map(|(time, e)| time + 5.5e-7 * e)
-        .collect();
+    let y: Vec<f64> = times.zip(of_time).map(|(time, e)| time + 5.5e-7 * e).collect();
     [x, x_sigma, y, vec![5.5e-7; 12]]
 }
 
@@ -71,10 +68,7 @@ fn a_power_law_with_errors_in_both_is_that_of_scipy() {
     assert!((ours.chi_square.unwrap().value / theirs[2] - 1.0).abs() < 1e-9);
     // With the true abscissas eliminated, the full problem's covariance has York's weights
     // at the adjusted abscissas: the same but for where both stopped.
-    for (ours, theirs) in [
-        (ours.prefactor_error, prefactor),
-        (ours.exponent_error, exponent),
-    ] {
+    for (ours, theirs) in [(ours.prefactor_error, prefactor), (ours.exponent_error, exponent)] {
         assert!((ours / theirs - 1.0).abs() < 1e-5, "{ours} {theirs}");
     }
 }
@@ -83,12 +77,7 @@ fn posterior(data: &Decay) -> (Posterior, f64) {
     let found = fit(data, &Fitting::default()).unwrap();
     let covariance = Covariance::new(&data.parameters, &found);
     // Stretch moves alone, as emcee's default.
-    let how = Sampling {
-        differential_share: 0.0,
-        ensembles: 1,
-        seed: 4,
-        ..Sampling::default()
-    };
+    let how = Sampling { differential_share: 0.0, ensembles: 1, seed: 4, ..Sampling::default() };
     let mut chain = Chain::start(data, &found, &covariance, &how).unwrap();
     chain.advance(data, 6250).unwrap();
     let posterior = chain.posterior(&Requirements::default()).unwrap();
@@ -106,34 +95,21 @@ fn fits_and_posteriors_are_those_of_scipy_and_emcee() {
         ("huber", Loss::Huber { scale }),
         ("cauchy", Loss::Cauchy { scale }),
     ];
-    let width = others["covariance"][0]
-        .sqrt()
-        .min(others["covariance"][3].sqrt());
+    let width = others["covariance"][0].sqrt().min(others["covariance"][3].sqrt());
     for (name, loss) in losses {
-        let how = Fitting {
-            loss,
-            ..Fitting::default()
-        };
+        let how = Fitting { loss, ..Fitting::default() };
         let found = fit(&data, &how).unwrap();
         assert!(found.ending.converged(), "{name}: {}", found.ending);
         for (ours, theirs) in found.point.iter().zip(&others[name]) {
             // χ²/2 within 1e-9 is 4e-5 standard errors; both programs'.
-            assert!(
-                (ours - theirs).abs() < 1e-4 * width,
-                "{name} {ours} {theirs}"
-            );
+            assert!((ours - theirs).abs() < 1e-4 * width, "{name} {ours} {theirs}");
         }
         // The same cost, to that tolerance.
         assert!((found.cost - others[name][2]).abs() < 2e-9, "{name}");
     }
     let found = fit(&data, &Fitting::default()).unwrap();
     let covariance = Covariance::new(&data.parameters, &found);
-    for (ours, theirs) in covariance
-        .matrix
-        .iter()
-        .flatten()
-        .zip(&others["covariance"])
-    {
+    for (ours, theirs) in covariance.matrix.iter().flatten().zip(&others["covariance"]) {
         // Slopes at points 4e-5 standard errors apart, and extrapolated differences.
         assert!((ours / theirs - 1.0).abs() < 1e-4);
     }

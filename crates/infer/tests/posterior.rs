@@ -1,9 +1,5 @@
 //! The sampler against distributions that are known.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::toys::{Curve, decay, normals, regression, spaced, straight};
 use hertzchain_infer::{
@@ -24,10 +20,7 @@ fn started(problem: &dyn Problem, how: &Sampling) -> (Fit, Covariance, Chain) {
 type Line = Curve<fn(&[f64], f64) -> f64>;
 
 fn line() -> Line {
-    let free = vec![
-        Parameter::new("a", "m", 1.0),
-        Parameter::new("b", "m/s", 1.0),
-    ];
+    let free = vec![Parameter::new("a", "m", 1.0), Parameter::new("b", "m/s", 1.0)];
     Curve::drawn(free, &spaced(0.0, 4.0, 12), 0.3, &[5.0, -2.0], 1, straight)
 }
 
@@ -35,12 +28,7 @@ fn line() -> Line {
 fn posterior_of_a_line_has_the_mean_and_covariance_of_linear_regression() {
     for differential_share in [0.0, 0.5, 1.0] {
         let data = line();
-        let how = Sampling {
-            differential_share,
-            walkers: 16,
-            seed: 3,
-            ..Sampling::default()
-        };
+        let how = Sampling { differential_share, walkers: 16, seed: 3, ..Sampling::default() };
         let (_, _, mut chain) = started(&data, &how);
         chain.advance(&data, 8000).unwrap();
         let found = chain.posterior(&Requirements::default()).unwrap();
@@ -48,19 +36,13 @@ fn posterior_of_a_line_has_the_mean_and_covariance_of_linear_regression() {
         for i in 0..2 {
             // Four standard errors of a mean of so many effective samples.
             let error = found.mean_error(i);
-            assert!(
-                (found.mean[i] - best[i]).abs() < 4.0 * error,
-                "{differential_share}"
-            );
+            assert!((found.mean[i] - best[i]).abs() < 4.0 * error, "{differential_share}");
             let effective = found.diagnoses[i].effective;
             for j in 0..2 {
                 // Standard error of a covariance: √(2/n) of √(CᵢᵢCⱼⱼ) at most.
                 let size = (covariance[i][i] * covariance[j][j]).sqrt();
                 let off = (found.covariance[i][j] - covariance[i][j]) / size;
-                assert!(
-                    off.abs() < 4.0 * (2.0 / effective).sqrt(),
-                    "{differential_share} {off}"
-                );
+                assert!(off.abs() < 4.0 * (2.0 / effective).sqrt(), "{differential_share} {off}");
             }
             let sd = covariance[i][i].sqrt();
             for (share, z) in [(0.025, -1.959_964), (0.16, -0.994_458), (0.5, 0.0)] {
@@ -69,11 +51,7 @@ fn posterior_of_a_line_has_the_mean_and_covariance_of_linear_regression() {
                 assert!(off.abs() < 4.0 * 2.7 / effective.sqrt(), "{share} {off}");
             }
         }
-        assert!(
-            (0.2..0.9).contains(&chain.acceptance()),
-            "{}",
-            chain.acceptance()
-        );
+        assert!((0.2..0.9).contains(&chain.acceptance()), "{}", chain.acceptance());
     }
 }
 
@@ -87,14 +65,8 @@ fn posterior_of_a_bent_valley_is_the_transformed_normal() {
         sigma: vec![0.3, 0.05],
         model: |p: &[f64], x: f64| if x == 0.0 { p[0] } else { p[1] - p[0] * p[0] },
     };
-    let (_, _, mut chain) = started(
-        &data,
-        &Sampling {
-            walkers: 24,
-            seed: 5,
-            ..Sampling::default()
-        },
-    );
+    let (_, _, mut chain) =
+        started(&data, &Sampling { walkers: 24, seed: 5, ..Sampling::default() });
     chain.advance(&data, 10_000).unwrap();
     let found = chain.posterior(&Requirements::default()).unwrap();
     // Mean 1 + 0.09 and variance 2·0.09² + 4·0.09 + 0.05², exactly.
@@ -106,23 +78,15 @@ fn posterior_of_a_bent_valley_is_the_transformed_normal() {
     // Median of b: that of a², a folded normal with next to nothing below 0; the
     // valley's 0.05 shifts it by less than 0.05²/0.6. Standard error 1.25 sd/√n.
     let off = found.quantile(1, 0.5) - 1.0;
-    assert!(
-        off.abs() < 4.0 * 1.25 * 0.6 / effective.sqrt() + 0.004,
-        "{off}"
-    );
+    assert!(off.abs() < 4.0 * 1.25 * 0.6 / effective.sqrt() + 0.004, "{off}");
 }
 
 #[test]
 fn bounds_and_log_normal_priors_shape_the_posterior() {
     // No data to speak of: the prior itself, a density over θ.
-    let mut free = vec![
-        Parameter::new("a", "", 2.0),
-        Parameter::new("b", "", 0.1).within(0.0, 1.0),
-    ];
-    free[0].prior = Prior::LogNormal {
-        median: 2.0,
-        ln_sd: 0.5,
-    };
+    let mut free =
+        vec![Parameter::new("a", "", 2.0), Parameter::new("b", "", 0.1).within(0.0, 1.0)];
+    free[0].prior = Prior::LogNormal { median: 2.0, ln_sd: 0.5 };
     let data = Curve {
         parameters: free,
         x: vec![0.0],
@@ -130,13 +94,7 @@ fn bounds_and_log_normal_priors_shape_the_posterior() {
         sigma: vec![1e3],
         model: |p: &[f64], _: f64| p[0] + p[1],
     };
-    let (_, _, mut chain) = started(
-        &data,
-        &Sampling {
-            seed: 8,
-            ..Sampling::default()
-        },
-    );
+    let (_, _, mut chain) = started(&data, &Sampling { seed: 8, ..Sampling::default() });
     chain.advance(&data, 8000).unwrap();
     let found = chain.posterior(&Requirements::default()).unwrap();
     let root = |k: usize| found.diagnoses[k].effective.sqrt();
@@ -157,20 +115,8 @@ fn posterior_intervals_hold_the_truth_as_often_as_they_say() {
     let mut held = [Vec::new(), Vec::new()];
     for seed in 0..60 {
         let free = vec![Parameter::new("a", "", 1.3), Parameter::new("k", "", 0.5)];
-        let data = Curve::drawn(
-            free,
-            &spaced(0.0, 4.0, 12),
-            0.05,
-            &truth,
-            1000 + seed,
-            decay,
-        );
-        let how = Sampling {
-            walkers: 16,
-            ensembles: 1,
-            seed,
-            ..Sampling::default()
-        };
+        let data = Curve::drawn(free, &spaced(0.0, 4.0, 12), 0.05, &truth, 1000 + seed, decay);
+        let how = Sampling { walkers: 16, ensembles: 1, seed, ..Sampling::default() };
         let (_, _, mut chain) = started(&data, &how);
         chain.advance(&data, 3000).unwrap();
         let found = chain.posterior(&Requirements::default()).unwrap();
@@ -184,12 +130,7 @@ fn posterior_intervals_hold_the_truth_as_often_as_they_say() {
         let found = coverage(held, factor).unwrap();
         // Binomial chance of 60 sets, at fixed seeds.
         let off = (found.share - found.expected) / found.chance;
-        assert!(
-            off.abs() < 3.0,
-            "{:.3} of {:.3}",
-            found.share,
-            found.expected
-        );
+        assert!(off.abs() < 3.0, "{:.3} of {:.3}", found.share, found.expected);
     }
 }
 
@@ -215,11 +156,7 @@ fn autocorrelation_time_of_a_markov_chain_is_the_closed_form() {
         // the window cuts off e⁻¹⁰ of the sum.
         let error = (2.0 * (10.0 * expected + 1.0) / 1e5).sqrt();
         assert!(found.resolved);
-        assert!(
-            (found.time / expected - 1.0).abs() < 4.0 * error,
-            "{phi} {}",
-            found.time
-        );
+        assert!((found.time / expected - 1.0).abs() < 4.0 * error, "{phi} {}", found.time);
         // Independent of where walkers are: chains agree.
         assert!(split_r_hat(&chains) < (1.0 + 2.0 * expected / 2500.0).sqrt());
     }
@@ -228,12 +165,7 @@ fn autocorrelation_time_of_a_markov_chain_is_the_closed_form() {
 #[test]
 fn chains_at_different_places_are_found_out() {
     let apart: Vec<Vec<f64>> = (0..4)
-        .map(|chain| {
-            normals(chain, 1000)
-                .iter()
-                .map(|x| x + chain as f64)
-                .collect()
-        })
+        .map(|chain| normals(chain, 1000).iter().map(|x| x + chain as f64).collect())
         .collect();
     // Means 0 to 3: B/W = 10/7 of eight halves; chance a few percent.
     let expected = (1.0 + 10.0 / 7.0_f64).sqrt();
@@ -261,20 +193,13 @@ fn whoever_is_asked_to_stop_waits_for_no_autocorrelation_time() {
 #[test]
 fn short_chains_give_no_quantiles_but_say_how_many_steps_would_do() {
     let data = line();
-    let how = Sampling {
-        walkers: 16,
-        seed: 3,
-        ..Sampling::default()
-    };
+    let how = Sampling { walkers: 16, seed: 3, ..Sampling::default() };
     let (_, _, mut chain) = started(&data, &how);
     for steps in [0, 3, 150] {
         chain.advance(&data, steps).unwrap();
         let missing = chain.posterior(&Requirements::default()).unwrap_err();
         assert!(missing.more_steps() > 0);
-        assert!(
-            missing.to_string().contains("has not converged"),
-            "{missing}"
-        );
+        assert!(missing.to_string().contains("has not converged"), "{missing}");
     }
     // What it asks for is enough, within three rounds.
     let mut rounds = 0;
@@ -289,12 +214,7 @@ fn short_chains_give_no_quantiles_but_say_how_many_steps_would_do() {
 #[test]
 fn a_chain_saved_and_continued_has_the_bits_of_an_uninterrupted_one() {
     let data = line();
-    let how = Sampling {
-        walkers: 8,
-        seed: 11,
-        keep_every: 3,
-        ..Sampling::default()
-    };
+    let how = Sampling { walkers: 8, seed: 11, keep_every: 3, ..Sampling::default() };
     let (_, _, mut whole) = started(&data, &how);
     let mut part = whole.clone();
     whole.advance(&data, 100).unwrap();
@@ -335,18 +255,12 @@ fn a_run_that_is_killed_anywhere_and_continued_ends_like_one_that_was_not() {
     for dies_at in [130, 500, 510] {
         assert!(dies_at < whole.steps());
         let mut part = begun.clone();
-        let killed = part.lead(
-            &data,
-            &asked,
-            20_000,
-            &mut |chain| match chain.steps() == dies_at {
+        let killed =
+            part.lead(&data, &asked, 20_000, &mut |chain| match chain.steps() == dies_at {
                 true => Err(Broken(serde_json::to_string(chain).unwrap())),
                 false => Ok(()),
-            },
-        );
-        let Err(Broken(saved)) = killed else {
-            unreachable!("{killed:?}")
-        };
+            });
+        let Err(Broken(saved)) = killed else { unreachable!("{killed:?}") };
         let mut read: Chain = serde_json::from_str(&saved).unwrap();
         read.belongs_to(&data).unwrap();
         let continued = read.lead(&data, &asked, 20_000, &mut |_| Ok::<(), Broken>(()));
@@ -357,10 +271,7 @@ fn a_run_that_is_killed_anywhere_and_continued_ends_like_one_that_was_not() {
     let mut other = line();
     other.y[0] += 1.0;
     let error = whole.belongs_to(&other).unwrap_err().to_string();
-    assert!(
-        error.starts_with("the chain was sampled from other data"),
-        "{error}"
-    );
+    assert!(error.starts_with("the chain was sampled from other data"), "{error}");
 }
 
 /// A line whose residuals are computed by as many threads as there are.
@@ -383,10 +294,7 @@ impl Problem for Threaded {
 #[test]
 fn fits_profiles_and_chains_have_equal_bits_whatever_the_threads() {
     let results = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let problem = Threaded(line());
             let (found, covariance, mut chain) = started(&problem, &Sampling::default());
@@ -407,13 +315,7 @@ fn walkers_start_inside_bounds_even_where_a_bound_binds() {
     let sd = covariance[1][1].sqrt();
     let (z, bound) = (0.5_f64, best[1] + 0.5 * sd);
     data.parameters[1] = data.parameters[1].clone().within(bound, 3.0);
-    let (found, _, mut chain) = started(
-        &data,
-        &Sampling {
-            seed: 2,
-            ..Sampling::default()
-        },
-    );
+    let (found, _, mut chain) = started(&data, &Sampling { seed: 2, ..Sampling::default() });
     assert_eq!(found.binding.len(), 1);
     chain.advance(&data, 6000).unwrap();
     let posterior = chain.posterior(&Requirements::default()).unwrap();
@@ -433,26 +335,11 @@ fn sampling_options_out_of_range_are_refused() {
     let found = fit(&data, &Fitting::default()).unwrap();
     let covariance = Covariance::new(&data.parameters, &found);
     let wrong = [
-        Sampling {
-            walkers: 7,
-            ..Sampling::default()
-        },
-        Sampling {
-            walkers: 2,
-            ..Sampling::default()
-        },
-        Sampling {
-            ensembles: 0,
-            ..Sampling::default()
-        },
-        Sampling {
-            keep_every: 0,
-            ..Sampling::default()
-        },
-        Sampling {
-            differential_share: 1.5,
-            ..Sampling::default()
-        },
+        Sampling { walkers: 7, ..Sampling::default() },
+        Sampling { walkers: 2, ..Sampling::default() },
+        Sampling { ensembles: 0, ..Sampling::default() },
+        Sampling { keep_every: 0, ..Sampling::default() },
+        Sampling { differential_share: 1.5, ..Sampling::default() },
     ];
     for how in wrong {
         let error = Chain::start(&data, &found, &covariance, &how).unwrap_err();

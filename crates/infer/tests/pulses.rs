@@ -24,10 +24,7 @@ const SPEED_ERROR_M_S: f64 = 5e-4;
 fn record(speed_m_s: f64, seed: u64, separate: bool) -> Vec<Vec<f64>> {
     let dry = preset("dry").unwrap();
     let (plan, _) = Plan::from_experiment(&dry, Some(speed_m_s)).unwrap();
-    let sensors = vec![
-        Sensor::Bead(plan.sensor_bead),
-        Sensor::Contact(plan.chain.beads.len()),
-    ];
+    let sensors = vec![Sensor::Bead(plan.sensor_bead), Sensor::Contact(plan.chain.beads.len())];
     let mut plan = plan.with_accuracy(1e-7).watching(sensors, Some(1e-6));
     plan.duration_s = Some(4e-3);
     let trace = shoot(&plan).unwrap().trace.unwrap();
@@ -37,9 +34,7 @@ fn record(speed_m_s: f64, seed: u64, separate: bool) -> Vec<Vec<f64>> {
         0.1 - GAIN_V_N * force_n + NOISE_V * noise
     };
     let quiet = [0.0; 600];
-    let [bead, wall] = &trace.columns[..] else {
-        unreachable!()
-    };
+    let [bead, wall] = &trace.columns[..] else { unreachable!() };
     let summed: Vec<f64> = bead.iter().zip(wall).map(|(b, w)| b + w).collect();
     let channels = match separate {
         true => vec![bead.clone(), wall.clone()],
@@ -52,22 +47,11 @@ fn record(speed_m_s: f64, seed: u64, separate: bool) -> Vec<Vec<f64>> {
 fn pulses(speed_m_s: f64, seed: u64, separate: bool) -> Pulses {
     // The photogate errs by one standard error.
     let measured = Estimate {
-        value: speed_m_s
-            + if seed.is_multiple_of(2) {
-                SPEED_ERROR_M_S
-            } else {
-                -SPEED_ERROR_M_S
-            },
+        value: speed_m_s + if seed.is_multiple_of(2) { SPEED_ERROR_M_S } else { -SPEED_ERROR_M_S },
         sigma: SPEED_ERROR_M_S,
     };
     let volts = record(speed_m_s, seed, separate);
-    Pulses::of(
-        &format!("shot {seed}"),
-        (Some(measured), Some(speed_m_s)),
-        1e-6,
-        &volts,
-    )
-    .unwrap()
+    Pulses::of(&format!("shot {seed}"), (Some(measured), Some(speed_m_s)), 1e-6, &volts).unwrap()
 }
 
 fn pulls(records: Vec<Pulses>, free: &[&str], exact: &[f64]) {
@@ -87,49 +71,28 @@ fn pulls(records: Vec<Pulses>, free: &[&str], exact: &[f64]) {
     let goodness = Goodness::with_nuisances(problem.nuisance_count(), &problem, &best);
     let chi_square = goodness.chi_square.unwrap();
     // Noise is white and normal, so that only chance moves chi-square.
-    assert!(
-        (1e-3..0.999).contains(&chi_square.probability),
-        "{chi_square:?}"
-    );
+    assert!((1e-3..0.999).contains(&chi_square.probability), "{chi_square:?}");
 }
 
 #[test]
 fn eta_b_and_the_sensors_gain_come_back_from_whole_pulses() {
-    let records = vec![
-        pulses(0.2, 1, false),
-        pulses(0.4, 2, false),
-        pulses(0.8, 3, false),
-    ];
-    pulls(
-        records,
-        &["eta", "B", "sensor_gain"],
-        &[3.2e4, 77.0, GAIN_V_N],
-    );
+    let records = vec![pulses(0.2, 1, false), pulses(0.4, 2, false), pulses(0.8, 3, false)];
+    pulls(records, &["eta", "B", "sensor_gain"], &[3.2e4, 77.0, GAIN_V_N]);
 }
 
 #[test]
 fn so_they_do_from_channels_of_their_own_with_both_gains_free() {
     let records = vec![pulses(0.3, 4, true), pulses(0.7, 5, true)];
-    pulls(
-        records,
-        &["eta", "B", "sensor_gain", "wall_gain"],
-        &[3.2e4, 77.0, GAIN_V_N, 1.0],
-    );
+    pulls(records, &["eta", "B", "sensor_gain", "wall_gain"], &[3.2e4, 77.0, GAIN_V_N, 1.0]);
 }
 
 #[test]
 fn records_that_cannot_be_fitted_say_why() {
     let volts = record(0.5, 6, false);
-    let speed = Estimate {
-        value: 0.5,
-        sigma: 0.0,
-    };
+    let speed = Estimate { value: 0.5, sigma: 0.0 };
     let of = |speed, volts: &[Vec<f64>]| Pulses::of("shot", (speed, None), 1e-6, volts);
     let error = of(None, &volts).unwrap_err().to_string();
-    assert!(
-        error.starts_with("shot: no speed of the striker"),
-        "{error}"
-    );
+    assert!(error.starts_with("shot: no speed of the striker"), "{error}");
     let flat = vec![vec![0.0; 3000]];
     let error = of(Some(speed), &flat).unwrap_err().to_string();
     assert!(error.starts_with("shot: "), "{error}");
@@ -146,18 +109,8 @@ fn a_record_whose_shot_the_model_does_not_show_is_left_out_by_name() {
     (broken.speed_m_s.value, broken.programmed_m_s) = (-0.7, 0.7);
     let problem = of(vec![broken.clone(), pulses(0.4, 7, false)]).unwrap();
     let named = |source: &&str| *source == "shot 7";
-    assert!(
-        problem
-            .records()
-            .iter()
-            .map(|r| r.source.as_str())
-            .all(|s| named(&s))
-    );
+    assert!(problem.records().iter().map(|r| r.source.as_str()).all(|s| named(&s)));
     assert_eq!(problem.parameters().len(), 1);
-    assert!(
-        problem.left_out()[0].contains("-0.7 m/s"),
-        "{:?}",
-        problem.left_out()
-    );
+    assert!(problem.left_out()[0].contains("-0.7 m/s"), "{:?}", problem.left_out());
     assert!(of(vec![broken]).is_err());
 }

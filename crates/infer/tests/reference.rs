@@ -30,11 +30,7 @@ fn rows() -> [(&'static str, Experiment); 5] {
             ROW,
             "[far_end]\nkind = \"plane-stop\"\nmass = \"1 kg\"\nmaterial = \"bronze\"\n",
         ),
-        (
-            "smaller half-bead",
-            ROW,
-            "[far_end]\nkind = \"half-bead\"\nradius = \"2 mm\"\n",
-        ),
+        ("smaller half-bead", ROW, "[far_end]\nkind = \"half-bead\"\nradius = \"2 mm\"\n"),
         ("dimers", DIMERS, "[far_end]\nkind = \"plane\"\n"),
         ("mixed", MIXED, "[far_end]\nkind = \"half-bead\"\n"),
     ]
@@ -74,16 +70,8 @@ fn a_set_k_and_a_are_those_of_one_contact_and_scale_the_others() {
         assert!(most / least > 1.01, "{name}: {least} to {most}");
         let own = numbers.map(|number| number.parameters(&[])[0].start);
         let truth = times(&changed(&row), &[], &[], &speeds);
-        let scaled = times(
-            &row,
-            &[1.04 * own[0], 1.1 / 1.04 * own[1]],
-            &["K", "A"],
-            &speeds,
-        );
-        let paths = [
-            "elastic_hertz.stiffness",
-            "damping_viscoelastic.relaxation_time",
-        ];
+        let scaled = times(&row, &[1.04 * own[0], 1.1 / 1.04 * own[1]], &["K", "A"], &speeds);
+        let paths = ["elastic_hertz.stiffness", "damping_viscoelastic.relaxation_time"];
         let values = [1.04 * own[0], 1.1 / 1.04 * own[1]];
         let pairs = [(paths[0], values[0]), (paths[1], values[1])];
         let set = times(&row.set(&pairs).unwrap(), &[], &[], &speeds);
@@ -91,10 +79,7 @@ fn a_set_k_and_a_are_those_of_one_contact_and_scale_the_others() {
             for of in 0..2 {
                 let [truth, scaled, set] = [truth, scaled, set].map(|row| row[of].unwrap());
                 // The solver's own errors.
-                assert!(
-                    (scaled / truth - 1.0).abs() < 3.0 * TRUTH,
-                    "{name}: {scaled} {truth}"
-                );
+                assert!((scaled / truth - 1.0).abs() < 3.0 * TRUTH, "{name}: {scaled} {truth}");
                 assert_eq!(scaled, set, "{name}");
             }
         }
@@ -107,10 +92,7 @@ fn measured(row: &Experiment, model: Model, speeds: &[f64]) -> CurveProblem {
     let estimate = |value: Option<f64>| value.map(|value| Estimate { value, sigma: 1e-7 });
     let line = |(at, (speed, of)): (usize, (&f64, &Predicted))| DataRow {
         line: at as u64 + 2,
-        speed_m_s: Estimate {
-            value: *speed,
-            sigma: 0.0,
-        },
+        speed_m_s: Estimate { value: *speed, sigma: 0.0 },
         values: [estimate(of[0]), estimate(of[1]), None, None],
         correlation: None,
         freedom: Freedom::KNOWN,
@@ -130,20 +112,14 @@ fn a_fit_of_k_and_a_finds_those_of_the_reference_contact() {
     for (name, row) in rows() {
         let names = ["K", "A"];
         let model = model(&row, &names).with_accuracy(1e-6);
-        let own: Vec<f64> = (model.numbers().parameters(&[]).iter())
-            .map(|p| p.start)
-            .collect();
+        let own: Vec<f64> = (model.numbers().parameters(&[]).iter()).map(|p| p.start).collect();
         let problem = measured(&row, model, &speeds);
         let best = fit(&problem, &Fitting::default()).unwrap();
         for (at, factor) in [1.04, 1.1 / 1.04].into_iter().enumerate() {
             let ratio = best.point[at] / (factor * own[at]);
             // Curves right to 1e-6 determine K to some 1e-5 and A to some 1e-3.
             let allowed = [1e-4, 5e-3][at];
-            assert!(
-                (ratio - 1.0).abs() < allowed,
-                "{name}: {}: {ratio}",
-                names[at]
-            );
+            assert!((ratio - 1.0).abs() < allowed, "{name}: {}: {ratio}", names[at]);
         }
     }
 }

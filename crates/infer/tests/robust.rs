@@ -1,9 +1,5 @@
 //! Standard errors under a robust loss.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{Covariance, Fit, Fitting, Loss, Parameter, Prior, fit};
@@ -22,10 +18,7 @@ fn line(errors: &[f64]) -> Line {
     let y = x.iter().zip(errors);
     let y = y.map(|(x, e)| straight(&[5.0, -2.0], *x) + SIGMA * e);
     Curve {
-        parameters: vec![
-            Parameter::new("a", "m", 1.0),
-            Parameter::new("b", "m/s", 1.0),
-        ],
+        parameters: vec![Parameter::new("a", "m", 1.0), Parameter::new("b", "m/s", 1.0)],
         y: y.collect(),
         sigma: vec![SIGMA; x.len()],
         x,
@@ -34,10 +27,7 @@ fn line(errors: &[f64]) -> Line {
 }
 
 fn fit_result(data: &Line, loss: Loss) -> (Fit, Covariance) {
-    let how = Fitting {
-        loss,
-        ..Fitting::default()
-    };
+    let how = Fitting { loss, ..Fitting::default() };
     let found = fit(data, &how).unwrap();
     let covariance = Covariance::new(&data.parameters, &found);
     (found, covariance)
@@ -49,9 +39,7 @@ fn with_outliers(seed: u64, count: usize) -> Vec<f64> {
     let (errors, chance) = drawn.split_at(count);
     // Beyond 1.2816 lies a tenth of a normal distribution.
     let far = |chance: f64| if chance > 1.2816 { 8.0 } else { 1.0 };
-    (errors.iter().zip(chance))
-        .map(|(e, chance)| far(*chance) * e)
-        .collect()
+    (errors.iter().zip(chance)).map(|(e, chance)| far(*chance) * e).collect()
 }
 
 #[test]
@@ -61,11 +49,7 @@ fn without_outliers_or_freedom_errors_are_those_of_least_squares() {
         let data = line(&errors);
         let (_, plain) = fit_result(&data, Loss::Squares);
         for scale in [1.345, 3.0] {
-            for loss in [
-                Loss::Huber { scale },
-                Loss::SoftL1 { scale },
-                Loss::Cauchy { scale },
-            ] {
+            for loss in [Loss::Huber { scale }, Loss::SoftL1 { scale }, Loss::Cauchy { scale }] {
                 let (_, robust) = fit_result(&data, loss);
                 assert_eq!(robust.loss_factor, 1.0, "{loss:?}");
                 for (robust, plain) in robust.sd.iter().zip(&plain.sd) {
@@ -85,10 +69,7 @@ fn a_prior_keeps_its_own_error_among_outliers() {
         let (_, free) = fit_result(&data, HUBER);
         assert!(free.loss_factor >= 1.0);
         let known = Parameter::new("b", "m/s", -2.0);
-        data.parameters[1] = known.with_prior(Prior::Normal {
-            mean: -2.0,
-            sd: prior_sd,
-        });
+        data.parameters[1] = known.with_prior(Prior::Normal { mean: -2.0, sd: prior_sd });
         let (_, held) = fit_result(&data, HUBER);
         let (_, plain) = fit_result(&data, Loss::Squares);
         // The data's own error, some 0.05, determines next to nothing beside it: 2 (1e-3/0.05)².

@@ -79,10 +79,7 @@ fn kolmogorov(mut values: Vec<f64>) -> f64 {
 #[test]
 fn probabilities_of_a_right_model_are_uniform_where_both_times_share_the_walls_pick() {
     // Three picks alike: half of either variance is the wall's.
-    let noise = Noise {
-        correlation: -0.5,
-        ..Noise::of_the_paper()
-    };
+    let noise = Noise { correlation: -0.5, ..Noise::of_the_paper() };
     let (stated, probabilities) = repeated(300, |truth, seed| truth.measured_with(noise, seed));
     let distance = kolmogorov(probabilities);
     assert!(distance < 1.95, "{distance}");
@@ -173,11 +170,8 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
         let rest = reported.rsplit(key).next().unwrap();
         rest.split(' ').next().unwrap().parse::<f64>().unwrap()
     });
-    let other = other.set(&[
-        ("young_modulus", young),
-        ("poisson_ratio", 0.32),
-        ("shear_viscosity", eta),
-    ]);
+    let other =
+        other.set(&[("young_modulus", young), ("poisson_ratio", 0.32), ("shear_viscosity", eta)]);
     let [curve, same] = [&viscoelastic, &other.unwrap()].map(|of| Truth::of(of, &[0.5]).curve);
     let incident = |curve: &[Predicted]| curve[0][0].unwrap();
     // Five digits are shown, of which times of flight depend on the 2/5th power.
@@ -203,10 +197,7 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let found = Identifiability::new(two.parameters(), &best, |at| two.residual_label(at));
     assert!(found.unidentifiable.is_empty());
     let covariance = Covariance::new(two.parameters(), &best);
-    for (at, exact) in [8.792_630_379_6e9, 3.385_289_514_9e-7]
-        .into_iter()
-        .enumerate()
-    {
+    for (at, exact) in [8.792_630_379_6e9, 3.385_289_514_9e-7].into_iter().enumerate() {
         let pull = (best.point[at] - exact) / covariance.sd[at];
         assert!(pull.abs() < 3.0, "{at}: {pull}");
     }
@@ -216,11 +207,7 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
 fn what_suggested_measurements_confused_numbers_is_foretold_with_their_errors() {
     let viscoelastic = preset("hertz-viscoelastic").unwrap();
     let truth = Truth::of(&viscoelastic, &[0.4, 0.5, 0.6]);
-    let noise = Noise {
-        speed_m_s: 1e-9,
-        time_s: 1e-12,
-        correlation: 0.0,
-    };
+    let noise = Noise { speed_m_s: 1e-9, time_s: 1e-12, correlation: 0.0 };
     // On the curve itself, but with errors of 5 µs.
     let mut both = truth.measured_with(noise, 1);
     for row in &mut both.rows {
@@ -277,11 +264,7 @@ fn one_speed_and_one_time_tell_one_number() {
     let one = model(&viscoelastic, &["K", "A"]);
     let parameters = one.numbers().parameters(&[0.5]);
     let error = hertzchain_infer::CurveProblem::new(one, data, parameters).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .contains("1 measured values for 2 free parameters (K, A)")
-    );
+    assert!(error.to_string().contains("1 measured values for 2 free parameters (K, A)"));
 }
 
 #[test]

@@ -50,14 +50,8 @@ fn intervals_hold_the_truth_where_errors_of_twenty_shots_are_widened_and_not_els
 }
 
 fn read(text: &str, scatter: Scatter) -> Result<Data, InferError> {
-    let defaults = Defaults {
-        scatter,
-        ..Defaults::default()
-    };
-    let selection = Selection {
-        defaults,
-        ..Selection::default()
-    };
+    let defaults = Defaults { scatter, ..Defaults::default() };
+    let selection = Selection { defaults, ..Selection::default() };
     Data::parse("a.csv", text, &selection)
 }
 
@@ -94,10 +88,7 @@ fn the_shots_of_each_row_are_read_by_themselves() {
     assert_eq!(data.lines_of_few_shots(), [2]);
     let wrong = read(&format!("{shots}0.5,1e-3,2.5,7e-4,1e-7\n"), Scatter::AsTold);
     let reported = wrong.unwrap_err().to_string();
-    assert_eq!(
-        reported,
-        "a.csv, line 2, shots: 2.5 is no number of shots; expected a whole one"
-    );
+    assert_eq!(reported, "a.csv, line 2, shots: 2.5 is no number of shots; expected a whole one");
 }
 
 #[test]
@@ -109,15 +100,9 @@ fn what_shots_share_does_not_scatter() {
     assert_eq!(speed, 19.0);
     // Nor does an error of measuring speeds.
     let known = text.replace("_m_s,shots", "_m_s,speed_error_shots");
-    assert_eq!(
-        freedom(&known.replace(",20,", ",0,"), Scatter::AsTold).0,
-        f64::INFINITY
-    );
+    assert_eq!(freedom(&known.replace(",20,", ",0,"), Scatter::AsTold).0, f64::INFINITY);
     // Of 1e-7 squared (8e-8)² are shared: 16 degrees for the other 0.36 of it.
-    assert!(
-        (time / (16.0 / 0.36_f64.powi(2)) - 1.0).abs() < 1e-12,
-        "{time}"
-    ); // rounding
+    assert!((time / (16.0 / 0.36_f64.powi(2)) - 1.0).abs() < 1e-12, "{time}"); // rounding
 }
 
 #[test]

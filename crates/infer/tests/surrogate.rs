@@ -14,9 +14,7 @@ fn farthest(surrogate: &Surrogate, problem: &CurveProblem, best: &Fit, around: &
         columns.map(moved).collect()
     };
     let all = 0..best.point.len();
-    let points: Vec<Vec<f64>> = all
-        .flat_map(|k| [-1.0, 1.0].map(|sign| aside(k, sign)))
-        .collect();
+    let points: Vec<Vec<f64>> = all.flat_map(|k| [-1.0, 1.0].map(|sign| aside(k, sign))).collect();
     let (own, exact) = (surrogate.residuals(&points), problem.residuals(&points));
     let mut worst: f64 = 0.0;
     for (own, exact) in own.into_iter().zip(exact) {
@@ -38,9 +36,7 @@ fn five_parameters_of_an_oil_have_curves_right_to_a_tenth_of_a_standard_error() 
     assert_eq!(best.point.len(), 5);
     let surrogate = Surrogate::new(&problem, &best, &around).unwrap();
     assert!(surrogate.error <= Surrogate::ALLOWED, "{}", surrogate.error);
-    let finer = problem
-        .clone()
-        .with_accuracy(0.1 * problem.model().accuracy);
+    let finer = problem.clone().with_accuracy(0.1 * problem.model().accuracy);
     let worst = farthest(&surrogate, &finer, &best, &around);
     // Not nought, or it would have been computed.
     assert!(worst > 0.0 && worst <= Surrogate::ALLOWED, "{worst}");

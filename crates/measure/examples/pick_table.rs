@@ -53,10 +53,7 @@ fn run(source: &Source, interval_s: f64, ratio_db: u32, shots: u64) -> [Errors; 
         let samples = source.recorded(interval_s, noise, &mut rng);
         let channels = Channels::Summed(&samples);
         for ((_, method), errors) in methods().iter().zip(&mut errors) {
-            let options = SignalOptions {
-                method: method.clone(),
-                ..SignalOptions::default()
-            };
+            let options = SignalOptions { method: method.clone(), ..SignalOptions::default() };
             let Ok(shot) = measure(channels, interval_s, &options) else {
                 continue;
             };
@@ -75,10 +72,8 @@ fn covered(errors: &[(Estimate, bool)], centre: impl Fn(&[f64]) -> f64) -> f64 {
     let counted: Vec<Estimate> = counted.map(|(error, _)| *error).collect();
     let values: Vec<f64> = counted.iter().map(|error| error.value).collect();
     let centre = centre(&values);
-    let pulls: Vec<f64> = counted
-        .iter()
-        .map(|error| (error.value - centre) / error.sigma)
-        .collect();
+    let pulls: Vec<f64> =
+        counted.iter().map(|error| (error.value - centre) / error.sigma).collect();
     coverage(&pulls, 1.96).map_or(f64::NAN, |found| 100.0 * found.share)
 }
 
@@ -124,9 +119,8 @@ fn cell(errors: &[(Estimate, bool)], shots: u64) -> String {
 fn bounds(source: &Source, interval_s: f64, noise: f64) -> [f64; 2] {
     let around = |at: f64| {
         let reach = (70e-6 / interval_s) as i32;
-        let pulse: Vec<f64> = (-reach..=reach)
-            .map(|i| (source.signal)(at + f64::from(i) * interval_s))
-            .collect();
+        let pulse: Vec<f64> =
+            (-reach..=reach).map(|i| (source.signal)(at + f64::from(i) * interval_s)).collect();
         let slopes = pulse.windows(3).map(|w| 0.5 * (w[2] - w[0]) / interval_s);
         1e9 * noise / slopes.map(|s| s * s).sum::<f64>().sqrt()
     };
@@ -152,9 +146,7 @@ fn table(source: &Source, shots: u64) {
             let rate = (1e-3 / interval_s).round();
             for ((rows, cells), bound) in rows.iter_mut().zip(of).zip(bounds) {
                 let cells = cells.join(" | ");
-                rows.push(format!(
-                    "{rate} kS/s | {ratio_db} dB | {cells} | {bound:.0} |"
-                ));
+                rows.push(format!("{rate} kS/s | {ratio_db} dB | {cells} | {bound:.0} |"));
             }
         }
     }

@@ -35,9 +35,7 @@ fn main() -> Anyhow {
     };
     let (megabytes, threads) = (number(1, 200)?, number(2, 2)?);
     let shots = (megabytes * 1_000_000).div_ceil(2 * SAMPLES_A_SHOT);
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build_global()?;
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     let folder = std::env::temp_dir().join(format!("hertzchain-throughput-{}", std::process::id()));
     fs::create_dir_all(&folder)?;
     let reported = all(&folder, shots, threads);
@@ -49,17 +47,11 @@ fn all(folder: &Path, shots: usize, threads: usize) -> Anyhow {
     let different: Vec<Vec<i16>> = (1..=DIFFERENT as u64).map(shot).collect();
     let recording = || (0..shots).map(|at| different[at % DIFFERENT].as_slice());
     let rows = Options {
-        reading: ReadOptions {
-            rate_hz: Some(f64::from(RATE_HZ)),
-            ..ReadOptions::default()
-        },
+        reading: ReadOptions { rate_hz: Some(f64::from(RATE_HZ)), ..ReadOptions::default() },
         ..Options::default()
     };
     let parts = Options {
-        reading: ReadOptions {
-            parts: Parts::Shots(SAMPLES_A_SHOT),
-            ..ReadOptions::default()
-        },
+        reading: ReadOptions { parts: Parts::Shots(SAMPLES_A_SHOT), ..ReadOptions::default() },
         ..Options::default()
     };
     let level = Options {
@@ -85,13 +77,8 @@ fn all(folder: &Path, shots: usize, threads: usize) -> Anyhow {
 
 /// One shot as a 16-bit digitiser gives it, 50 dB above its noise.
 fn shot(seed: u64) -> Vec<i16> {
-    let scene = Scene {
-        samples: SAMPLES_A_SHOT,
-        noise: 3e-3,
-        offset: 0.02,
-        seed,
-        ..Scene::default()
-    };
+    let scene =
+        Scene { samples: SAMPLES_A_SHOT, noise: 3e-3, offset: 0.02, seed, ..Scene::default() };
     let digits = |x: &f64| (x * STEPS).round() as i16;
     scene.summed().iter().map(digits).collect()
 }
@@ -104,9 +91,7 @@ fn time(name: &str, path: &Path, megabytes: f64, options: &Options, threads: usi
     let (start, before_s) = (Instant::now(), processor_s());
     let measured = measure(&files, options, &());
     let seconds = start.elapsed().as_secs_f64();
-    let own_s = processor_s()
-        .zip(before_s)
-        .map(|(after, before)| after - before);
+    let own_s = processor_s().zip(before_s).map(|(after, before)| after - before);
     let whole = measured.shots.iter().filter(|shot| {
         let flight = shot.flight.as_ref();
         flight.is_ok_and(|flight| flight.reflected_s.is_some())
@@ -136,9 +121,7 @@ fn processor_s() -> Option<f64> {
 /// Most memory that was needed since the kernel began its record, in MiB.
 fn most_mib() -> Option<f64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kib / 1024.0)
 }
@@ -183,10 +166,7 @@ fn wav<'a>(path: &Path, shots: usize, rows: impl Iterator<Item = &'a [i16]>) -> 
 
 fn hdf5<'a>(path: &Path, shots: usize, rows: impl Iterator<Item = &'a [i16]>) -> Anyhow {
     let file = H5File::create(path)?;
-    let samples = file
-        .new_dataset::<i16>()
-        .shape([shots, SAMPLES_A_SHOT])
-        .create("samples")?;
+    let samples = file.new_dataset::<i16>().shape([shots, SAMPLES_A_SHOT]).create("samples")?;
     for (at, row) in rows.enumerate() {
         samples.write_slice(&[at, 0], &[1, SAMPLES_A_SHOT], row)?;
     }

@@ -37,11 +37,7 @@ fn decided(flight: Flight) -> Option<Flight> {
         return None;
     }
     Some(match is_open(&flight, PulseKind::Reflected) {
-        true => Flight {
-            reflected_s: None,
-            covariance_s2: 0.0,
-            ..flight
-        },
+        true => Flight { reflected_s: None, covariance_s2: 0.0, ..flight },
         false => flight,
     })
 }
@@ -60,11 +56,7 @@ impl MaximumPair {
         let pulse = flight.picks.pulse(kind)?;
         let other = flight.picks.competing[kind as usize]?;
         let after_s = other.picked.time_s - pulse.time_s;
-        Some(Self {
-            after_s,
-            width_s: pulse.width_s,
-            later_higher: turned(other.lower, after_s),
-        })
+        Some(Self { after_s, width_s: pulse.width_s, later_higher: turned(other.lower, after_s) })
     }
 
     /// How much higher the later maximum is, by this shot and by all of the same two.

@@ -21,9 +21,7 @@ impl Pairs {
         let count = pairs.len() as f64;
         let mean = |at: usize| pairs.iter().map(|(pair, _)| pair[at]).sum::<f64>() / count;
         let [first, second] = [mean(0), mean(1)];
-        let products = pairs
-            .iter()
-            .map(|(pair, _)| (pair[0] - first) * (pair[1] - second));
+        let products = pairs.iter().map(|(pair, _)| (pair[0] - first) * (pair[1] - second));
         let scatter = match pairs.len() {
             0 | 1 => 0.0,
             _ => products.sum::<f64>() / (count - 1.0) / all as f64,

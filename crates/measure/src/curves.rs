@@ -24,11 +24,7 @@ pub struct Grouping {
 
 impl Default for Grouping {
     fn default() -> Self {
-        Self {
-            gap_m_s: 0.01,
-            reference: "dry".to_owned(),
-            keep_dubious: false,
-        }
+        Self { gap_m_s: 0.01, reference: "dry".to_owned(), keep_dubious: false }
     }
 }
 
@@ -144,9 +140,7 @@ impl Curves {
             let (case, mut unmeasured) = Case::new(name, &shots, grouping);
             unmeasured.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
             curves.unmeasured.extend(unmeasured);
-            curves
-                .cases
-                .extend(Some(case).filter(|case| !case.rows.is_empty()));
+            curves.cases.extend(Some(case).filter(|case| !case.rows.is_empty()));
         }
         curves.ratios = ratios(&curves.cases, grouping);
         curves
@@ -202,9 +196,7 @@ impl Case {
         let gap_m_s = grouping.gap_m_s;
         let timed = shots.iter().filter_map(|shot| Timed::new(shot, grouping));
         let timed: Vec<Timed<'_>> = timed.collect();
-        let untimed = shots
-            .iter()
-            .filter(|shot| Timed::new(shot, grouping).is_none());
+        let untimed = shots.iter().filter(|shot| Timed::new(shot, grouping).is_none());
         let mut untimed: Vec<GroupSpeed> =
             untimed.filter_map(|shot| GroupSpeed::new(shot)).collect();
         let (mut rows, mut none) = (Vec::new(), Vec::<(GroupSpeed, usize)>::new());
@@ -218,10 +210,7 @@ impl Case {
             }
         }
         for at in untimed {
-            match none
-                .iter_mut()
-                .find(|(other, _)| other.is_same(&at, gap_m_s))
-            {
+            match none.iter_mut().find(|(other, _)| other.is_same(&at, gap_m_s)) {
                 Some((_, shots)) => *shots += 1,
                 None => none.push((at, 1)),
             }
@@ -234,10 +223,7 @@ impl Case {
         });
         let case = Self {
             name: name.to_owned(),
-            laws: Laws {
-                incident: law(&points(&rows, 0)),
-                reflected: law(&points(&rows, 1)),
-            },
+            laws: Laws { incident: law(&points(&rows, 0)), reflected: law(&points(&rows, 1)) },
             rows,
         };
         (case, unmeasured.collect())
@@ -261,9 +247,7 @@ impl Case {
 /// Shots of one programmed speed, then those that have none by their speeds.
 fn grouped<'a>(timed: &[Timed<'a>], gap_m_s: f64) -> Vec<Vec<Timed<'a>>> {
     let by = |programmed: bool, gap_m_s: f64| -> Vec<Vec<Timed<'a>>> {
-        let of = timed
-            .iter()
-            .filter(|shot| shot.group.is_programmed == programmed);
+        let of = timed.iter().filter(|shot| shot.group.is_programmed == programmed);
         let of: Vec<Timed<'_>> = of.copied().collect();
         let speeds: Vec<f64> = of.iter().map(|shot| shot.group.m_s).collect();
         let pick = |group: Vec<usize>| group.iter().map(|index| of[*index]).collect();
@@ -296,10 +280,7 @@ fn row(group: &[Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedR
     let counted: Vec<Timed<'_>> = pairs
         .filter_map(|(shot, flight)| flight.as_ref().map(|flight| Timed { flight, ..**shot }))
         .collect();
-    let returns = counted
-        .iter()
-        .filter(|shot| has_return(shot.flight))
-        .count();
+    let returns = counted.iter().filter(|shot| has_return(shot.flight)).count();
     let of = |value: &dyn Fn(&Flight) -> Option<Estimate>| {
         let values = counted.iter().filter_map(|shot| value(shot.flight));
         summary(&values.collect::<Vec<_>>())
@@ -357,10 +338,7 @@ fn are_known(speeds: &[Estimate]) -> bool {
 fn shared_s(shots: &[Timed<'_>], time: usize) -> f64 {
     let flights = shots.iter().map(|shot| shot.flight);
     let own = flights.filter(|flight| flight.times_s()[time].is_some());
-    mean_systematic(
-        &own.map(|flight| flight.systematic()[time])
-            .collect::<Vec<_>>(),
-    )
+    mean_systematic(&own.map(|flight| flight.systematic()[time]).collect::<Vec<_>>())
 }
 
 /// Mean of times that are taken to one speed, and the parts of its error.
@@ -380,10 +358,7 @@ struct TimeAtSpeed {
 impl TimeAtSpeed {
     fn estimate(self) -> Estimate {
         let alone = (self.picking_s2 + self.excess_s2).sqrt();
-        Estimate {
-            value: self.mean_s,
-            sigma: alone.hypot(self.shared_s),
-        }
+        Estimate { value: self.mean_s, sigma: alone.hypot(self.shared_s) }
     }
 }
 
@@ -452,12 +427,8 @@ fn correlation_at_speed(
 }
 
 fn points(rows: &[SpeedRow], time: usize) -> Vec<Point> {
-    let point = |row: &SpeedRow| {
-        Some(Point {
-            speed: row.speed_m_s,
-            value: row.at_mean_speed_s[time]?,
-        })
-    };
+    let point =
+        |row: &SpeedRow| Some(Point { speed: row.speed_m_s, value: row.at_mean_speed_s[time]? });
     rows.iter().filter_map(point).collect()
 }
 
@@ -467,10 +438,7 @@ fn law(points: &[Point]) -> Result<PowerLaw, FitError> {
     let speeds = column(&|point| point.speed.value);
     let values = column(&|point| point.value.value);
     let sound = |sigma: f64| sigma.is_finite() && sigma > 0.0;
-    match points
-        .iter()
-        .all(|point| sound(point.value.sigma) && point.speed.sigma.is_finite())
-    {
+    match points.iter().all(|point| sound(point.value.sigma) && point.speed.sigma.is_finite()) {
         true => power_law_both_errors(
             &speeds,
             &column(&|point| point.speed.sigma),

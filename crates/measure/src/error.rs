@@ -88,10 +88,7 @@ impl MeasureError {
     }
 
     pub(crate) fn malformed(file: &Path, format: &str, detail: impl std::fmt::Display) -> Self {
-        Self::Format(
-            file_name(file),
-            format!("not readable as {format}: {detail}"),
-        )
+        Self::Format(file_name(file), format!("not readable as {format}: {detail}"))
     }
 
     pub(crate) fn empty(source: String) -> Self {
@@ -127,18 +124,14 @@ impl MeasureError {
     }
 
     pub(crate) fn enough(found: usize, needed: usize) -> Result<(), Self> {
-        (found >= needed)
-            .then_some(())
-            .ok_or(Self::TooShort(found, needed))
+        (found >= needed).then_some(()).ok_or(Self::TooShort(found, needed))
     }
 }
 
 /// Rejects samples that are not finite numbers or whose squares, summed, would overflow.
 pub(crate) fn all_finite(samples: &[f64]) -> Result<(), MeasureError> {
     let bad = samples.iter().position(|x| x.is_nan() || x.abs() >= 1e140);
-    bad.map_or(Ok(()), |index| {
-        Err(MeasureError::NotFinite(index, samples[index]))
-    })
+    bad.map_or(Ok(()), |index| Err(MeasureError::NotFinite(index, samples[index])))
 }
 
 /// A path in messages.

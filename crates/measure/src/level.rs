@@ -96,12 +96,7 @@ enum TriggerState {
 impl Cutter {
     fn new(trigger: LevelTrigger) -> Result<Self, MeasureError> {
         trigger.check()?;
-        Ok(Self {
-            trigger,
-            position: 0,
-            free_from: 0,
-            state: TriggerState::Resting(0),
-        })
+        Ok(Self { trigger, position: 0, free_from: 0, state: TriggerState::Resting(0) })
     }
 
     /// The shots that end in the next piece of the recording.
@@ -213,13 +208,7 @@ struct UnderWay {
 
 impl<I: Iterator<Item = Result<Record, MeasureError>>> AtLevel<I> {
     pub(crate) fn new(pieces: I, level: Level) -> Self {
-        Self {
-            pieces,
-            level,
-            shots: 0,
-            under_way: None,
-            ready: VecDeque::new(),
-        }
+        Self { pieces, level, shots: 0, under_way: None, ready: VecDeque::new() }
     }
 
     fn piece(&mut self, piece: Record) -> Result<(), MeasureError> {

@@ -70,10 +70,7 @@ impl ShotList {
             if !row.iter().all(str::is_empty) {
                 let entry = columns.entry(&row, line)?;
                 let name = Path::new(&entry.file).file_name().unwrap_or_default();
-                by_name
-                    .entry(name.to_owned())
-                    .or_default()
-                    .push(entries.len());
+                by_name.entry(name.to_owned()).or_default().push(entries.len());
                 entries.push(entry);
             }
         }
@@ -110,10 +107,7 @@ impl ShotList {
                 None => unmatched.push(format!("no line is about {}", shot.source)),
             }
         }
-        let unused = self
-            .entries
-            .iter()
-            .filter(|entry| !used.contains(&entry.line));
+        let unused = self.entries.iter().filter(|entry| !used.contains(&entry.line));
         unmatched.extend(unused.filter_map(|entry| entry.unused(files, shots)));
         unmatched
     }
@@ -137,22 +131,15 @@ impl ListEntry {
             let shown: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
             let more = if files.len() > SHOWN { ", …" } else { "" };
             let shown = shown.join(", ");
-            return Some(format!(
-                "line {line}: {file} is none of the files given ({shown}{more})"
-            ));
+            return Some(format!("line {line}: {file} is none of the files given ({shown}{more})"));
         }
-        let mut of_file = shots
-            .iter()
-            .filter(|shot| shot.file.ends_with(file))
-            .peekable();
+        let mut of_file = shots.iter().filter(|shot| shot.file.ends_with(file)).peekable();
         of_file.peek()?;
         let number = self.shot.unwrap_or_default();
-        Some(
-            match of_file.any(|shot| self.means(&shot.file, shot.shot)) {
-                true => format!("line {line}: an earlier line is about the same"),
-                false => format!("line {line}: {file} has no shot {number}"),
-            },
-        )
+        Some(match of_file.any(|shot| self.means(&shot.file, shot.shot)) {
+            true => format!("line {line}: an earlier line is about the same"),
+            false => format!("line {line}: {file} has no shot {number}"),
+        })
     }
 }
 
@@ -186,10 +173,7 @@ impl ListColumns {
             "the first line must name the columns: file, and any of shot, case, speed, speed error";
         let no_file = || MeasureError::List(detail.to_owned());
         places[0].ok_or_else(no_file)?;
-        Ok(Self {
-            places,
-            decimal_comma,
-        })
+        Ok(Self { places, decimal_comma })
     }
 
     fn entry(&self, row: &StringRecord, line: u64) -> Result<ListEntry, MeasureError> {

@@ -100,10 +100,8 @@ type Done = (Shot, Option<(usize, usize)>);
 /// may be larger than memory. Results do not depend on the number of threads.
 #[must_use]
 pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measurement {
-    let mut measurement = Measurement {
-        bandwidth: options.measuring.bandwidth,
-        ..Measurement::default()
-    };
+    let mut measurement =
+        Measurement { bandwidth: options.measuring.bandwidth, ..Measurement::default() };
     let records = files.iter().flat_map(|file| records(file, options));
     let mut records = records.take_while(|_| !watch.stopped());
     let (mut refused, mut speeds) = (Vec::new(), IndexMap::new());
@@ -117,9 +115,7 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
         });
         for (shots, record) in done.into_iter().zip(batch) {
             if !record.speeds_m_s.is_empty() {
-                speeds
-                    .entry(record.file.clone())
-                    .or_insert_with(|| record.speeds_m_s.clone());
+                speeds.entry(record.file.clone()).or_insert_with(|| record.speeds_m_s.clone());
             }
             measurement.add(shots, &record, options);
         }
@@ -150,10 +146,7 @@ fn records(file: &Path, options: &Options) -> Box<dyn Iterator<Item = Read>> {
         let records = read(file, &options.reading);
         return Box::new(records.map(move |record| record.map_err(&refused)));
     };
-    let pieces = ReadOptions {
-        parts: Parts::Pieces(PIECE),
-        ..options.reading.clone()
-    };
+    let pieces = ReadOptions { parts: Parts::Pieces(PIECE), ..options.reading.clone() };
     let cut = AtLevel::new(read(file, &pieces), level);
     Box::new(cut.map(move |record| record.map_err(&refused)))
 }
@@ -267,10 +260,7 @@ impl Measurement {
         match self.notes.iter_mut().find(|note| note.text == text) {
             Some(note) if note.files.last().is_some_and(|last| last == file) => {}
             Some(note) => note.files.push(file.to_owned()),
-            None => self.notes.push(Note {
-                text: text.to_owned(),
-                files: vec![file.to_owned()],
-            }),
+            None => self.notes.push(Note { text: text.to_owned(), files: vec![file.to_owned()] }),
         }
     }
 
@@ -290,16 +280,13 @@ impl Measurement {
                      --shot-samples",
                     speeds.len()
                 );
-                self.refused
-                    .push(MeasureError::Shots(file_name(file), detail));
+                self.refused.push(MeasureError::Shots(file_name(file), detail));
             }
             return;
         }
         let examples = self.examples.iter_mut().map(|example| &mut example.shot);
         for shot in shots.into_iter().chain(examples.filter(of_file)) {
-            let speed = speeds
-                .get((number(shot) as usize).saturating_sub(1))
-                .copied();
+            let speed = speeds.get((number(shot) as usize).saturating_sub(1)).copied();
             shot.set_speed(speed.filter(|speed| speed.is_finite()), options);
         }
     }

@@ -46,12 +46,7 @@ pub(crate) fn content(channels: &[Channel]) -> Content {
         }
     }
     let loud = shares.iter().enumerate().filter(|(_, share)| **share > 0.0);
-    let blocks = loud.map(|(at, share)| Burst {
-        from: at,
-        to: at,
-        swing: *share,
-        pulses: 1,
-    });
+    let blocks = loud.map(|(at, share)| Burst { from: at, to: at, swing: *share, pulses: 1 });
     let pulses = joined(blocks, 3, |_| 0);
     let Some(quiet) = division(&pulses) else {
         return Content::One;
@@ -72,10 +67,7 @@ fn shares_of(volts: &[f64]) -> Vec<f64> {
     let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
     let middle = median(&some).unwrap_or(0.0);
     let swing = |block: &[f64]| {
-        let off = block
-            .iter()
-            .step_by(EVERY)
-            .map(|volt| (volt - middle).abs());
+        let off = block.iter().step_by(EVERY).map(|volt| (volt - middle).abs());
         off.fold(0.0, f64::max)
     };
     let swings: Vec<f64> = volts.chunks(BLOCK).map(swing).collect();
@@ -113,9 +105,7 @@ fn division(pulses: &[Burst]) -> Option<usize> {
     let mut quiet: Vec<usize> = quiet.collect();
     quiet.sort_unstable();
     let growth = |pair: &&[usize]| pair[1] as f64 / pair[0] as f64;
-    let most = quiet
-        .windows(2)
-        .max_by(|a, b| growth(a).total_cmp(&growth(b)))?;
+    let most = quiet.windows(2).max_by(|a, b| growth(a).total_cmp(&growth(b)))?;
     (most[1] >= QUIET * most[0]).then_some(most[1])
 }
 

@@ -47,10 +47,7 @@ impl Shot {
         let asked = &options.measuring;
         let stated_s = stated_high_pass_hz(record, options).map(|hz| (TAU * hz).recip());
         let channels = match record.channels.as_slice() {
-            [sensor, wall, ..] => Channels::Separate {
-                sensor: &sensor.volts,
-                wall: &wall.volts,
-            },
+            [sensor, wall, ..] => Channels::Separate { sensor: &sensor.volts, wall: &wall.volts },
             one => Channels::Summed(one.first().map_or(&[], |one| &one.volts)),
         };
         let range = |channel: usize| {
@@ -64,9 +61,7 @@ impl Shot {
                 ..asked.find
             },
             high_pass_s: asked.high_pass_s.or(stated_s),
-            bandwidth: asked
-                .bandwidth
-                .or_else(|| stated_bandwidth(record, options)),
+            bandwidth: asked.bandwidth.or_else(|| stated_bandwidth(record, options)),
             ..asked.clone()
         };
         let measured = crate::signal::measure(channels, record.interval_s, &measuring);
@@ -147,11 +142,7 @@ impl Shot {
             remarks.push(remark.to_owned());
         }
         if let Some((count, first)) = self.gaps {
-            let (are, were) = if count == 1 {
-                (" is", "was")
-            } else {
-                ("s are", "were")
-            };
+            let (are, were) = if count == 1 { (" is", "was") } else { ("s are", "were") };
             let inside = if self.gap_in_pulse { " in a pulse" } else { "" };
             remarks.push(format!(
                 "{count} sample{are} no number{inside}, from sample {} on, and {were} filled",

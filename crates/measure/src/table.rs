@@ -27,10 +27,7 @@ fn words(title: &str, text: Option<impl ToString>) -> (String, String) {
 }
 
 fn estimate(title: &str, error: &str, of: Option<Estimate>) -> [(String, String); 2] {
-    [
-        number(title, of.map(|of| of.value)),
-        number(error, of.map(|of| of.sigma)),
-    ]
+    [number(title, of.map(|of| of.value)), number(error, of.map(|of| of.sigma))]
 }
 
 /// The lines of a table, with that of its titles.
@@ -44,11 +41,7 @@ fn table(titles: Line, lines: impl Iterator<Item = Line>) -> impl Iterator<Item 
 /// One line a shot.
 #[must_use]
 pub fn shots_csv(shots: &[Shot]) -> String {
-    table(
-        shot_line(None),
-        shots.iter().map(|shot| shot_line(Some(shot))),
-    )
-    .collect()
+    table(shot_line(None), shots.iter().map(|shot| shot_line(Some(shot)))).collect()
 }
 
 /// Writes the same line by line: recordings may have any number of shots.
@@ -56,10 +49,7 @@ pub fn shots_csv(shots: &[Shot]) -> String {
 /// # Errors
 /// Those of what is written to.
 pub fn write_shots(shots: &[Shot], out: &mut dyn Write) -> io::Result<()> {
-    let mut lines = table(
-        shot_line(None),
-        shots.iter().map(|shot| shot_line(Some(shot))),
-    );
+    let mut lines = table(shot_line(None), shots.iter().map(|shot| shot_line(Some(shot))));
     lines.try_for_each(|line| out.write_all(line.as_bytes()))
 }
 
@@ -77,29 +67,15 @@ fn shot_line(shot: Option<&Shot>) -> Line {
         words("shot", shot.and_then(|shot| shot.shot)),
         words("case", shot.map(|shot| &shot.case)),
     ];
-    line.extend(estimate(
-        "speed_m_s",
-        "speed_sigma_m_s",
-        shot.and_then(|shot| shot.speed_m_s),
-    ));
+    line.extend(estimate("speed_m_s", "speed_sigma_m_s", shot.and_then(|shot| shot.speed_m_s)));
     for (at, time) in ["incident", "reflected"].into_iter().enumerate() {
         let value = flight.and_then(|flight| flight.times_s()[at]);
-        line.extend(estimate(
-            &format!("tof_{time}_s"),
-            &format!("tof_{time}_sigma_s"),
-            value,
-        ));
+        line.extend(estimate(&format!("tof_{time}_s"), &format!("tof_{time}_sigma_s"), value));
     }
-    line.push(number(
-        "tof_correlation",
-        flight.and_then(Flight::correlation),
-    ));
+    line.push(number("tof_correlation", flight.and_then(Flight::correlation)));
     for (name, ratio) in [
         ("wall", flight.map(|flight| flight.wall_over_incident)),
-        (
-            "returning",
-            flight.and_then(|flight| flight.reflected_over_incident),
-        ),
+        ("returning", flight.and_then(|flight| flight.reflected_over_incident)),
     ] {
         let title = format!("{name}_over_passing");
         line.extend(estimate(&title, &format!("{title}_sigma"), ratio));
@@ -126,13 +102,8 @@ pub fn speeds_csv(curves: &Curves) -> String {
 
 fn speed_line(case: Option<&str>, row: Option<&SpeedRow>, none: Option<&UnmeasuredSpeed>) -> Line {
     let mut line = vec![words("case", case)];
-    let exact = |value| Estimate {
-        value,
-        sigma: f64::NAN,
-    };
-    let speed = row
-        .map(|row| row.speed_m_s)
-        .or(none.map(|of| exact(of.speed_m_s)));
+    let exact = |value| Estimate { value, sigma: f64::NAN };
+    let speed = row.map(|row| row.speed_m_s).or(none.map(|of| exact(of.speed_m_s)));
     line.extend(estimate("speed_m_s", "speed_error_m_s", speed));
     let shots = row.map(|row| row.shots).or(none.map(|of| (0, of.shots)));
     line.push(words("shots", shots.map(|shots| shots.0)));
@@ -148,16 +119,10 @@ fn speed_line(case: Option<&str>, row: Option<&SpeedRow>, none: Option<&Unmeasur
     summarised("tof_incident_s", row.map(|row| row.incident_s));
     summarised("tof_reflected_s", row.and_then(|row| row.reflected_s));
     summarised("wall_over_passing", row.map(|row| row.wall_over_incident));
-    summarised(
-        "returning_over_passing",
-        row.and_then(|row| row.reflected_over_incident),
-    );
+    summarised("returning_over_passing", row.and_then(|row| row.reflected_over_incident));
     for (at, (name, _)) in PULSES.into_iter().enumerate() {
         let width = row.and_then(|row| row.widths_s[at]);
-        line.push(number(
-            &format!("{name}_width_s"),
-            width.map(|width| width.mean),
-        ));
+        line.push(number(&format!("{name}_width_s"), width.map(|width| width.mean)));
     }
     let times = ["tof_incident", "tof_reflected"].into_iter().enumerate();
     for (at, time) in times.clone() {
@@ -174,10 +139,7 @@ fn speed_line(case: Option<&str>, row: Option<&SpeedRow>, none: Option<&Unmeasur
         words("returns_undecided", row.map(|row| row.returns_undecided)),
         words("returns_missing", row.map(|row| row.returns_missing)),
         number("tof_correlation", row.and_then(|row| row.correlation)),
-        number(
-            "tof_at_mean_speed_correlation",
-            row.and_then(|row| row.correlation_at_mean_speed),
-        ),
+        number("tof_at_mean_speed_correlation", row.and_then(|row| row.correlation_at_mean_speed)),
     ]);
     line
 }
@@ -188,10 +150,7 @@ fn speed_line(case: Option<&str>, row: Option<&SpeedRow>, none: Option<&Unmeasur
 #[must_use]
 pub fn laws_csv(curves: &Curves) -> String {
     let lines = curves.cases.iter().flat_map(|case| {
-        let laws = [
-            ("incident", &case.laws.incident),
-            ("reflected", &case.laws.reflected),
-        ];
+        let laws = [("incident", &case.laws.incident), ("reflected", &case.laws.reflected)];
         let found = laws.map(|(time, law)| Some((case, time, law.as_ref().ok()?)));
         found.into_iter().flatten()
     });

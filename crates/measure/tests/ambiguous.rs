@@ -37,9 +37,7 @@ fn shot(later_higher: f64, seed: u64) -> Flight {
 }
 
 fn twenty(later_higher: f64, first: u64) -> Vec<Flight> {
-    (first..first + 20)
-        .map(|seed| shot(later_higher, seed))
-        .collect()
+    (first..first + 20).map(|seed| shot(later_higher, seed)).collect()
 }
 
 /// As they enter the mean; no shot is left out for its passing or wall's pulse.
@@ -60,10 +58,7 @@ fn one_fragment_is_chosen_for_all_shots_of_a_speed() {
     for first in [0, 20, 40] {
         for (later_higher, later) in [(0.006, true), (-0.006, false)] {
             let own = twenty(later_higher, first);
-            wrong += own
-                .iter()
-                .filter(|flight| is_later(flight) != later)
-                .count();
+            wrong += own.iter().filter(|flight| is_later(flight) != later).count();
             let all = resolve_ambiguous(&own);
             for flight in &all {
                 assert!(is_later(flight) == later, "{flight:?}");
@@ -95,9 +90,8 @@ fn returns_of_equal_fragments_have_no_time() {
 /// Chains that differ have their own largest fragments, and keep them.
 #[test]
 fn shots_that_differ_keep_their_own_fragments() {
-    let own: Vec<Flight> = (0..20)
-        .map(|seed| shot(if seed % 2 == 0 { 0.02 } else { -0.02 }, 200 + seed))
-        .collect();
+    let own: Vec<Flight> =
+        (0..20).map(|seed| shot(if seed % 2 == 0 { 0.02 } else { -0.02 }, 200 + seed)).collect();
     let all = resolve_ambiguous(&own);
     for (seed, flight) in all.iter().enumerate() {
         if flight.reflected_s.is_some() {

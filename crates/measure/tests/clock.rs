@@ -15,11 +15,7 @@ fn recording(interval_s: f64, digits: usize) -> PathBuf {
     fs::create_dir_all(&folder).unwrap();
     let path = folder.join(format!("{interval_s:e}-{digits}.csv"));
     let begun_s = 500e-6;
-    let at_s = [
-        begun_s,
-        begun_s + FLIGHTS_S[0],
-        begun_s + FLIGHTS_S[0] + FLIGHTS_S[1],
-    ];
+    let at_s = [begun_s, begun_s + FLIGHTS_S[0], begun_s + FLIGHTS_S[0] + FLIGHTS_S[1]];
     let volt = |time_s: f64| -> f64 {
         let bell = |at_s: f64| ((time_s - at_s) / 35e-6).cosh().powi(-4);
         bell(at_s[0]) + 1.6 * bell(at_s[1]) + 0.4 * bell(at_s[2])
@@ -36,10 +32,7 @@ fn recording(interval_s: f64, digits: usize) -> PathBuf {
 
 fn measured(path: &Path, rate_hz: Option<f64>) -> Measurement {
     let options = Options {
-        reading: ReadOptions {
-            rate_hz,
-            ..ReadOptions::default()
-        },
+        reading: ReadOptions { rate_hz, ..ReadOptions::default() },
         ..Options::default()
     };
     measure(&[path.to_owned()], &options, &())
@@ -60,10 +53,7 @@ fn rounded_times_bias_no_time_of_flight_beyond_its_error() {
             let found = measured(&recording(interval_s, digits), None);
             for (off_s, sigma_s) in departures_s(&found) {
                 // Twice the error: a uniform share of what digits leave open ends at 1.73.
-                assert!(
-                    off_s < 2.0 * sigma_s,
-                    "{interval_s:e} {digits}: {off_s:e} {sigma_s:e}"
-                );
+                assert!(off_s < 2.0 * sigma_s, "{interval_s:e} {digits}: {off_s:e} {sigma_s:e}");
             }
         }
     }

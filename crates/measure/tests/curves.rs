@@ -75,10 +75,7 @@ fn returning_series(folder: &Path, returns: u64) -> PathBuf {
         let mut samples = samples(700.0, 9000.0, shot);
         if shot >= returns {
             let noise = samples[..1000].to_vec();
-            samples.splice(
-                1500..2500,
-                noise.iter().map(|n| n.clamp(&-30, &30)).copied(),
-            );
+            samples.splice(1500..2500, noise.iter().map(|n| n.clamp(&-30, &30)).copied());
         }
         push(&mut writer, shot, 0.5, &samples);
     }
@@ -119,12 +116,7 @@ fn told_series(
     let mut writer = SeriesWriter::create(&path, &info(case, reported)).unwrap();
     for shot in 0..5_u64 {
         let incident = 630.0 * speed_m_s.powf(-0.2) + 0.2 * (shot as f64 - 2.0);
-        push(
-            &mut writer,
-            shot,
-            speed_m_s,
-            &samples(incident, height, shot),
-        );
+        push(&mut writer, shot, speed_m_s, &samples(incident, height, shot));
     }
     writer.finish().unwrap()
 }
@@ -153,10 +145,7 @@ fn the_droop_of_the_high_pass_that_a_recording_tells_of_is_taken_out_unless_opti
         },
         ..Options::default()
     };
-    let kept = Options {
-        keep_droop: true,
-        ..Options::default()
-    };
+    let kept = Options { keep_droop: true, ..Options::default() };
     let (unasked, of_options) = (flights(&Options::default()), flights(&given(160.0)));
     assert_eq!((unasked.0, of_options.0), (1, 0));
     assert_eq!(unasked.1, of_options.1);
@@ -171,18 +160,8 @@ fn the_droop_of_the_high_pass_that_a_recording_tells_of_is_taken_out_unless_opti
 fn maxima_are_corrected_for_the_low_pass_that_a_recording_states_unless_options_say_more() {
     let folder = folder("low-pass");
     let stated = |order: &'static str, kind: &'static str| {
-        let stated = [
-            ("low_pass_hz", "20000"),
-            ("low_pass_order", order),
-            ("low_pass_kind", kind),
-        ];
-        [told_series(
-            &folder,
-            &format!("{order}-{kind}"),
-            0.5,
-            9000.0,
-            &stated,
-        )]
+        let stated = [("low_pass_hz", "20000"), ("low_pass_order", order), ("low_pass_kind", kind)];
+        [told_series(&folder, &format!("{order}-{kind}"), 0.5, 9000.0, &stated)]
     };
     let flights = |files: &[PathBuf], options: &Options| {
         let measured = measure(files, options, &());
@@ -199,10 +178,7 @@ fn maxima_are_corrected_for_the_low_pass_that_a_recording_states_unless_options_
         },
         ..Options::default()
     };
-    let kept = Options {
-        keep_low_pass: true,
-        ..Options::default()
-    };
+    let kept = Options { keep_low_pass: true, ..Options::default() };
     for (order, kind, poles) in [("first", "bessel", 1), ("second", "butterworth", 2)] {
         let files = stated(order, kind);
         let unasked = flights(&files, &Options::default());
@@ -240,10 +216,7 @@ fn shots_of_one_programmed_speed_are_one_row_with_mean_and_spread() {
         let expected_s = 630e-6 * speed.powf(-0.2);
         assert!((row.incident_s.mean - expected_s).abs() < 6e-8, "{row:?}");
         // 0.2 samples times the deviation of −2..=2, √2.5, and the noise.
-        assert!(
-            (row.incident_s.deviation - 0.316e-6).abs() < 1e-7,
-            "{row:?}"
-        );
+        assert!((row.incident_s.deviation - 0.316e-6).abs() < 1e-7, "{row:?}");
     }
     let law = curves.cases[0].laws.incident.as_ref().unwrap();
     // Speeds are wrong by less than 1e-12 here; times by 1e-4 at most.
@@ -259,19 +232,9 @@ fn clipped_shots_are_flagged_and_count_only_if_asked() {
         let clipped = |doubt: &QualityFlag| matches!(doubt, QualityFlag::Saturation(_));
         assert!(shot.doubts.iter().any(clipped), "{}", shot.flags());
     }
-    assert!(
-        Curves::of(&measured.shots, &Grouping::default())
-            .cases
-            .is_empty()
-    );
-    let keep = Grouping {
-        keep_dubious: true,
-        ..Grouping::default()
-    };
-    assert_eq!(
-        Curves::of(&measured.shots, &keep).cases[0].rows[0].shots.0,
-        5
-    );
+    assert!(Curves::of(&measured.shots, &Grouping::default()).cases.is_empty());
+    let keep = Grouping { keep_dubious: true, ..Grouping::default() };
+    assert_eq!(Curves::of(&measured.shots, &keep).cases[0].rows[0].shots.0, 5);
 }
 
 #[test]
@@ -321,10 +284,7 @@ fn scatter_that_measured_speeds_explain_is_no_error_of_a_law() {
 #[test]
 fn wet_is_held_against_dry_with_both_errors() {
     let folder = folder("ratio");
-    let files = [
-        series(&folder, "dry", 0.5, 9000.0),
-        series(&folder, "pump", 0.5, 9000.0),
-    ];
+    let files = [series(&folder, "dry", 0.5, 9000.0), series(&folder, "pump", 0.5, 9000.0)];
     let curves = Curves::of(&measured(&files).shots, &Grouping::default());
     let ratio = curves.ratios[0].incident[0];
     // The same series twice, to the last bit.
@@ -358,16 +318,10 @@ fn a_list_overrides_what_files_say() {
     let folder = folder("list");
     let files = [series(&folder, "dry", 0.5, 9000.0)];
     let list = "file,shot,case,speed,speed error\ndry-0.5.h5,3,gear,0.7,0.01\n";
-    let options = Options {
-        list: Some(ShotList::parse(list).unwrap()),
-        ..Options::default()
-    };
+    let options = Options { list: Some(ShotList::parse(list).unwrap()), ..Options::default() };
     let shots = measure(&files, &options, &()).shots;
     let third = shots[3].speed_m_s.unwrap();
-    assert_eq!(
-        (shots[3].case.as_str(), third.value, third.sigma),
-        ("gear", 0.7, 0.01)
-    );
+    assert_eq!((shots[3].case.as_str(), third.value, third.sigma), ("gear", 0.7, 0.01));
     assert_eq!(shots[2].case, "dry");
 }
 
@@ -387,10 +341,7 @@ fn recording(folder: &Path, heights: &[f64]) -> PathBuf {
 }
 
 fn cut(file: &Path, cutting: Cut) -> Measurement {
-    let options = Options {
-        cutting,
-        ..Options::default()
-    };
+    let options = Options { cutting, ..Options::default() };
     measure(&[file.to_owned()], &options, &())
 }
 
@@ -415,11 +366,7 @@ fn several_shots_that_are_not_plain_are_a_doubt_and_a_level_cuts_them() {
     let file = recording(&folder("mixed"), &[9000.0, 2000.0, 9000.0]);
     let found = cut(&file, Cut::Plain);
     assert_eq!(found.shots.len(), 1);
-    assert!(
-        found.shots[0].flags().contains("--level"),
-        "{}",
-        found.shots[0].flags()
-    );
+    assert!(found.shots[0].flags().contains("--level"), "{}", found.shots[0].flags());
     assert!(found.shots[0].is_dubious());
     let level = |volts, samples| Cut::Level(Level { volts, samples });
     for samples in [None, Some(4000)] {
@@ -430,11 +377,7 @@ fn several_shots_that_are_not_plain_are_a_doubt_and_a_level_cuts_them() {
             // Noise of 7 in 2000.
             assert!((incident_s - 700e-6).abs() < 1e-6, "{incident_s}");
         }
-        assert!(
-            found.shots[2].source.contains("shot 3 at 0.1005 s"),
-            "{}",
-            found.shots[2].source
-        );
+        assert!(found.shots[2].source.contains("shot 3 at 0.1005 s"), "{}", found.shots[2].source);
     }
     let never = cut(&file, level(50_000.0, None));
     let why = never.refused[0].to_string();
@@ -478,22 +421,13 @@ fn a_level_finds_the_same_shots_whatever_the_pieces() {
         })
         .unwrap();
     let file = writer.finish().unwrap();
-    let falling = Cut::Level(Level {
-        volts: -0.4,
-        samples: Some(4000),
-    });
+    let falling = Cut::Level(Level { volts: -0.4, samples: Some(4000) });
     let found = cut(&file, falling);
     assert_eq!(found.shots.len(), 3);
-    let times = found
-        .shots
-        .iter()
-        .map(|shot| shot.flight.as_ref().unwrap().incident_s.value);
+    let times = found.shots.iter().map(|shot| shot.flight.as_ref().unwrap().incident_s.value);
     let times: Vec<f64> = times.collect();
     // The same samples thrice; only where they begin differs.
-    assert!(
-        times.iter().all(|time| (time - times[0]).abs() < 1e-9),
-        "{times:?}"
-    );
+    assert!(times.iter().all(|time| (time - times[0]).abs() < 1e-9), "{times:?}");
     assert_eq!(found.shots[2].speed_m_s.map(|speed| speed.value), Some(0.5));
 }
 
@@ -502,16 +436,10 @@ fn lines_and_shots_that_do_not_find_each_other_are_told() {
     let folder = folder("unmatched");
     let files = [series(&folder, "dry", 0.5, 9000.0)];
     let list = "file,shot,speed\ndry-0.5.h5,3,0.7\ndry-0.5.h5,3,0.8\ndry-0.5.h5,9,0.7\nno.h5,,1\n";
-    let options = Options {
-        list: Some(ShotList::parse(list).unwrap()),
-        ..Options::default()
-    };
+    let options = Options { list: Some(ShotList::parse(list).unwrap()), ..Options::default() };
     let reported = measure(&files, &options, &()).unmatched;
     assert_eq!(reported.len(), 3, "{reported:?}");
     assert_eq!(reported[0], "line 3: an earlier line is about the same");
     assert_eq!(reported[1], "line 4: dry-0.5.h5 has no shot 9");
-    assert_eq!(
-        reported[2],
-        "line 5: no.h5 is none of the files given (dry-0.5.h5)"
-    );
+    assert_eq!(reported[2], "line 5: no.h5 is none of the files given (dry-0.5.h5)");
 }

@@ -44,22 +44,13 @@ fn row(test: &str, speeds_m_s: &[f64]) -> PathBuf {
 
 /// The ways to cut a recording.
 fn ways() -> [Options; 3] {
-    let cutting = |cutting| Options {
-        cutting,
-        ..Options::default()
-    };
-    let level = Level {
-        volts: 1000.0,
-        samples: None,
-    };
+    let cutting = |cutting| Options { cutting, ..Options::default() };
+    let level = Level { volts: 1000.0, samples: None };
     [
         cutting(Cut::Plain),
         cutting(Cut::Level(level)),
         Options {
-            reading: ReadOptions {
-                parts: Parts::Shots(EACH),
-                ..ReadOptions::default()
-            },
+            reading: ReadOptions { parts: Parts::Shots(EACH), ..ReadOptions::default() },
             ..Options::default()
         },
     ]
@@ -77,10 +68,7 @@ fn every_shot_of_a_long_recording_gets_its_own_speed_however_it_is_cut() {
         let measured = measure(from_ref(&path), &options, &());
         assert_eq!(speeds_m_s(&measured), [Some(0.3), Some(0.5), Some(0.7)]);
         assert!(measured.refused.is_empty(), "{:?}", measured.refused);
-        assert_eq!(
-            measured.examples[0].shot.speed_m_s,
-            measured.shots[0].speed_m_s
-        );
+        assert_eq!(measured.examples[0].shot.speed_m_s, measured.shots[0].speed_m_s);
     }
 }
 

@@ -28,9 +28,7 @@ const SPEEDS_M_S: [f64; 11] = [0.075, 0.1, 0.14, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75,
 const ACCURACIES: [f64; 4] = [1e-4, 1e-5, 1e-6, 1e-7];
 
 /// In contact times.
-const STEPS: [f64; 12] = [
-    0.22, 0.2, 0.18, 0.16, 0.135, 0.12, 0.1, 0.08, 0.06, 0.05, 0.03, 0.02,
-];
+const STEPS: [f64; 12] = [0.22, 0.2, 0.18, 0.16, 0.135, 0.12, 0.1, 0.08, 0.06, 0.05, 0.03, 0.02];
 
 /// Accuracy of what errors are measured against.
 const EXACT: f64 = 1e-11;
@@ -49,10 +47,10 @@ fn main() -> Result<()> {
         Some("steps") => by_step(),
         Some("rounding") => rounding(),
         Some("evaluates") => evaluates(),
-        Some(other) => Err(format!(
-            "`{other}` is none of `steps`, `rounding`, `evaluates`, nor nothing"
-        )
-        .into()),
+        Some(other) => {
+            Err(format!("`{other}` is none of `steps`, `rounding`, `evaluates`, nor nothing")
+                .into())
+        }
     }
 }
 
@@ -74,12 +72,8 @@ fn one_by_one(name: &str, accuracy: f64) -> Result<Vec<Shot>> {
 /// Shots as a sweep fires them.
 fn together(name: &str, accuracy: f64) -> Result<Vec<Shot>> {
     let plans = plans(name, accuracy)?;
-    let shots = run_plans(
-        &plans,
-        Control::PerShot { checked: false },
-        InstructionSet::default(),
-        &|| {},
-    );
+    let shots =
+        run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
     shots.into_iter().map(|shot| Ok(shot?)).collect()
 }
 
@@ -92,10 +86,7 @@ fn errors(flights: impl Iterator<Item = Option<Flight>>, exact: &[Shot]) -> Vec<
 
 /// The largest error, where it is, and how many shots have none.
 fn reported(errors: &[Option<f64>]) -> String {
-    let known = errors
-        .iter()
-        .zip(SPEEDS_M_S)
-        .filter_map(|(e, v)| Some(((*e)?, v)));
+    let known = errors.iter().zip(SPEEDS_M_S).filter_map(|(e, v)| Some(((*e)?, v)));
     let worst = known.reduce(|most, here| if here.0 > most.0 { here } else { most });
     let lost = errors.iter().filter(|error| error.is_none()).count();
     let worst = worst.map_or_else(String::new, |(error, v)| format!("{error:.1e} at {v}"));
@@ -170,17 +161,15 @@ fn rounding() -> Result<()> {
     println!("| preset | openings | step | incident | reflected |");
     let kinds = [false, true].into_iter();
     let kinds = kinds.flat_map(|openings| STEPS.map(|step| (openings, step)));
-    for (name, (openings, step)) in CASES
-        .iter()
-        .flat_map(|name| kinds.clone().map(move |kind| (name, kind)))
+    for (name, (openings, step)) in
+        CASES.iter().flat_map(|name| kinds.clone().map(move |kind| (name, kind)))
     {
         let fly = |precision| flown(name, step, (precision, openings), End::Reflected);
         let (double, single) = (fly(Precision::Double)?, fly(Precision::Single)?);
         let pairs = double.into_iter().zip(single);
         let changes = pairs.filter_map(|(double, single)| rounded(double?, single?));
-        let [incident, reflected] = changes.fold([0.0_f64; 2], |most, change| {
-            [0, 1].map(|i| most[i].max(change[i]))
-        });
+        let [incident, reflected] =
+            changes.fold([0.0_f64; 2], |most, change| [0, 1].map(|i| most[i].max(change[i])));
         println!("| {name} | {openings} | {step} | {incident:.1e} | {reflected:.1e} |");
     }
     Ok(())
@@ -189,36 +178,11 @@ fn rounding() -> Result<()> {
 /// Accuracies asked, whether in single precision, whether openings are found,
 /// and steps to try.
 const TRIED: [(f64, Precision, bool, [f64; 6]); 5] = [
-    (
-        1e-3,
-        Precision::Single,
-        false,
-        [0.2, 0.19, 0.18, 0.17, 0.16, 0.15],
-    ),
-    (
-        1e-4,
-        Precision::Single,
-        false,
-        [0.16, 0.15, 0.14, 0.13, 0.12, 0.11],
-    ),
-    (
-        1e-5,
-        Precision::Double,
-        true,
-        [0.11, 0.1, 0.09, 0.08, 0.07, 0.06],
-    ),
-    (
-        1e-6,
-        Precision::Double,
-        true,
-        [0.05, 0.045, 0.04, 0.036, 0.033, 0.03],
-    ),
-    (
-        1e-7,
-        Precision::Double,
-        true,
-        [0.02, 0.018, 0.016, 0.014, 0.013, 0.012],
-    ),
+    (1e-3, Precision::Single, false, [0.2, 0.19, 0.18, 0.17, 0.16, 0.15]),
+    (1e-4, Precision::Single, false, [0.16, 0.15, 0.14, 0.13, 0.12, 0.11]),
+    (1e-5, Precision::Double, true, [0.11, 0.1, 0.09, 0.08, 0.07, 0.06]),
+    (1e-6, Precision::Double, true, [0.05, 0.045, 0.04, 0.036, 0.033, 0.03]),
+    (1e-7, Precision::Double, true, [0.02, 0.018, 0.016, 0.014, 0.013, 0.012]),
 ];
 
 fn evaluates() -> Result<()> {
@@ -277,12 +241,7 @@ fn flown(
     let plans = plans(name, EXACT)?;
     let systems = plans.iter().map(|plan| Ok(System::new(&plan.chain)?));
     let systems = systems.collect::<Result<Vec<_>>>()?;
-    let shot = |system| ensemble::Shot {
-        system,
-        step,
-        duration_s: LONGEST_S,
-        precision,
-    };
+    let shot = |system| ensemble::Shot { system, step, duration_s: LONGEST_S, precision };
     let shots: Vec<_> = systems.iter().map(shot).collect();
     let wall = systems[0].contacts() - 1;
     let settings = ensemble::Settings {
@@ -302,8 +261,5 @@ fn flight(flown: LaneResult) -> Option<Flight> {
     let [sensor, wall] = <[_; 2]>::try_from(flown.signals).ok()?;
     let passages = Passages::from_signals(sensor, wall, flown.time_s);
     let passage = passages.passage().ok()?;
-    Some(Flight {
-        incident_s: passage.tof_incident_s(),
-        reflected_s: passage.tof_reflected_s(),
-    })
+    Some(Flight { incident_s: passage.tof_incident_s(), reflected_s: passage.tof_reflected_s() })
 }

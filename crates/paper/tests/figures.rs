@@ -21,22 +21,12 @@ const TABLES: [&str; 8] = [
     "tof.csv",
 ];
 
-const FIGURES: [&str; 6] = [
-    "energy",
-    "figure1",
-    "figure2",
-    "figure3",
-    "figure4",
-    "space_time",
-];
+const FIGURES: [&str; 6] = ["energy", "figure1", "figure2", "figure3", "figure4", "space_time"];
 
 /// All figures, with a scan in which so many readings move some verdicts.
 fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Figure)> {
-    let claims: Vec<Claim> = claims()
-        .unwrap()
-        .into_iter()
-        .map(|evaluator| evaluator.claim)
-        .collect();
+    let claims: Vec<Claim> =
+        claims().unwrap().into_iter().map(|evaluator| evaluator.claim).collect();
     let row = |reading: Reading, moved: usize| Row {
         reading,
         verdicts: (0..claims.len())
@@ -71,11 +61,7 @@ fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Fi
 
 #[test]
 fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column() {
-    let coarse = Options {
-        accuracy: 1e-4,
-        draws: 0,
-        ..Options::default()
-    };
+    let coarse = Options { accuracy: 1e-4, draws: 0, ..Options::default() };
     let mut computed = reproduce(&coarse, &Silent).unwrap();
     for (name, figure) in pictures(&mut computed, 3) {
         assert_eq!(covered(&figure.svg()).1, 0, "{name}: a legend hides data");
@@ -95,24 +81,13 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
     let pictures = figures::figures(&computed).unwrap();
     let drawn: BTreeSet<&str> = pictures.iter().map(|(name, _)| *name).collect();
     assert_eq!(drawn, BTreeSet::from(FIGURES));
-    let names: Vec<&str> = tables
-        .iter()
-        .map(|(name, _)| *name)
-        .chain([PROVENANCE])
-        .collect();
-    assert_eq!(
-        names.iter().copied().collect::<BTreeSet<_>>(),
-        BTreeSet::from(TABLES)
-    );
+    let names: Vec<&str> = tables.iter().map(|(name, _)| *name).chain([PROVENANCE]).collect();
+    assert_eq!(names.iter().copied().collect::<BTreeSet<_>>(), BTreeSet::from(TABLES));
     let provenance = computed.provenance_json(&names);
     for name in names {
         assert!(provenance.contains(&format!("\"{name}\"")), "{name}");
     }
     let captions = figures::captions(&pictures);
-    assert!(
-        drawn
-            .iter()
-            .all(|name| captions.contains(&format!("## {name}\n")))
-    );
+    assert!(drawn.iter().all(|name| captions.contains(&format!("## {name}\n"))));
     assert!(pictures[0].1.png(100.0).unwrap().starts_with(b"\x89PNG"));
 }

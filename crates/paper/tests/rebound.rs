@@ -54,11 +54,7 @@ fn nothing_hits_the_striker_after_the_end_of_the_shot() {
         for speed in [0.075, 0.25, 1.23] {
             let plan = plan(&preset(case).unwrap(), speed, 1e-6);
             let shot = shoot(&plan).unwrap();
-            let longer = shoot(&Plan {
-                duration_s: Some(10.0 * shot.duration_s),
-                ..plan
-            })
-            .unwrap();
+            let longer = shoot(&Plan { duration_s: Some(10.0 * shot.duration_s), ..plan }).unwrap();
             let long_after = longer.velocity_m_s[0];
             assert_eq!(end_m_s(&shot), long_after, "{case} at {speed} m/s");
             assert_eq!(end_m_s(&longer), long_after, "{case} at {speed} m/s");
@@ -74,10 +70,7 @@ fn a_rebound_that_is_not_followed_is_not_given() {
     assert_eq!(flights.rebound.unwrap().end_m_s, None);
     assert_eq!(flights.flight, whole.flight);
     assert!(flights.work.force_passes < whole.work.force_passes);
-    let cut = shoot(&Plan {
-        duration_s: Some(flights.duration_s),
-        ..plan
-    });
+    let cut = shoot(&Plan { duration_s: Some(flights.duration_s), ..plan });
     assert_eq!(cut.unwrap().rebound.unwrap().end_m_s, None);
 }
 

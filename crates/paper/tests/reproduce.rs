@@ -9,12 +9,7 @@ use hertzchain_paper::reproduce::{Effort, Gathering, Options, Silent, gather, oi
 use hertzchain_sim::{Plan, shoot};
 
 fn gathered(speeds_m_s: &[f64], accuracy: f64, effort: Effort<'_>) -> Evidence {
-    let how = Gathering {
-        reading: Reading::default(),
-        speeds_m_s,
-        accuracy,
-        effort,
-    };
+    let how = Gathering { reading: Reading::default(), speeds_m_s, accuracy, effort };
     gather(&how, &|_, _, _| {}, &|| {}).unwrap()
 }
 
@@ -23,12 +18,7 @@ fn times_of_flight_are_those_of_an_independent_integration() {
     let evidence = gathered(&[0.075, 0.5, 1.23], 1e-8, Effort::Checked);
     // From bench/reference/tof.csv, right to 1e-9.
     let known = [
-        (
-            "hertz-viscoelastic",
-            0.5,
-            7.512709591640e-4,
-            7.830363759420e-4,
-        ),
+        ("hertz-viscoelastic", 0.5, 7.512709591640e-4, 7.830363759420e-4),
         ("dry", 0.075, 1.086942703759e-3, 1.120470789504e-3),
         ("dry", 1.23, 6.602612483984e-4, 6.994934309488e-4),
         ("motor", 0.075, 1.067775531256e-3, 1.261853802063e-3),
@@ -40,10 +30,7 @@ fn times_of_flight_are_those_of_an_independent_integration() {
         for (branch, known) in Branch::BOTH.into_iter().zip([incident, reflected]) {
             let off = (p.tof_s(branch) / known - 1.0).abs();
             // The rerun that estimates what was reached is itself wrong by a fraction.
-            assert!(
-                off < 2.0 * p.accuracy_reached.max(1e-9),
-                "{case} {speed}: {off:e}"
-            );
+            assert!(off < 2.0 * p.accuracy_reached.max(1e-9), "{case} {speed}: {off:e}");
         }
     }
 }
@@ -75,11 +62,7 @@ fn with_accuracies(p: &Point) -> Vec<(f64, f64)> {
         (p.excess_s[0], p.excess_accuracy_s),
         (p.excess_s[1], p.excess_accuracy_s),
     ];
-    tofs.into_iter()
-        .chain(peaks)
-        .chain(widths)
-        .chain(others)
-        .collect()
+    tofs.into_iter().chain(peaks).chain(widths).chain(others).collect()
 }
 
 #[test]
@@ -141,11 +124,7 @@ fn the_second_returning_peak_is_the_top_that_fine_samples_show() {
 
 #[test]
 fn default_reading_gives_the_ratios_known_from_an_independent_integration() {
-    let evidence = gathered(
-        &[0.075, 0.12, 0.15, 0.5, 0.56, 1.0, 1.23],
-        1e-6,
-        Effort::Lean(&[]),
-    );
+    let evidence = gathered(&[0.075, 0.12, 0.15, 0.5, 0.56, 1.0, 1.23], 1e-6, Effort::Lean(&[]));
     let ratio = |case: &str, i: usize| evidence.ratios(case)[i].incident;
     // Bounds as wide as the two digits in which they are stated.
     assert!((0..7).all(|i| (0.965..0.995).contains(&ratio("gear", i))));
@@ -203,17 +182,10 @@ fn a_draw_depends_on_its_seed_and_index_alone() {
 fn scan_tries_every_option_once_and_says_what_it_left_out() {
     // A coarse scan: verdicts differ from the fine one, its bookkeeping does not.
     let scan = scan(4, &[0.1, 0.24, 0.5, 1.23], 1e-3, &Silent).unwrap();
-    let options: usize = Reading::switches()
-        .iter()
-        .map(|s| s.options.len() - 1)
-        .sum();
+    let options: usize = Reading::switches().iter().map(|s| s.options.len() - 1).sum();
     assert_eq!(scan.single.len(), options);
     assert!(scan.product.len() <= 4);
-    let sizes: usize = scan
-        .product_of
-        .iter()
-        .map(|(_, options)| options.len())
-        .product();
+    let sizes: usize = scan.product_of.iter().map(|(_, options)| options.len()).product();
     assert_eq!(scan.product.len(), sizes);
     assert!(scan.rows().all(|row| row.score() <= scan.closest().score()));
     for row in scan.as_close() {
@@ -221,23 +193,13 @@ fn scan_tries_every_option_once_and_says_what_it_left_out() {
         assert!(row.reading.changes().len() >= scan.closest().reading.changes().len());
     }
     let moved = |name: &str| {
-        let rows = scan
-            .single
-            .iter()
-            .filter(|row| row.reading.changes()[0].0 == name);
-        rows.filter(|row| row.verdicts != scan.default.verdicts)
-            .count()
-            > 0
+        let rows = scan.single.iter().filter(|row| row.reading.changes()[0].0 == name);
+        rows.filter(|row| row.verdicts != scan.default.verdicts).count() > 0
     };
     for switch in Reading::switches() {
         let in_product = scan.product_of.iter().any(|(name, _)| *name == switch.name);
         let left_out = scan.left_out.iter().any(|(name, _)| *name == switch.name);
-        assert_eq!(
-            moved(switch.name),
-            in_product || left_out,
-            "{}",
-            switch.name
-        );
+        assert_eq!(moved(switch.name), in_product || left_out, "{}", switch.name);
     }
 }
 

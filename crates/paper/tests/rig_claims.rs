@@ -49,10 +49,7 @@ fn shots(speed_m_s: f64, spread: [f64; 2], of: impl Fn(f64, &mut Shot)) -> Vec<S
 
 /// Claims look at gaps, not at where bodies are.
 fn nowhere() -> State {
-    State {
-        displacement_m: Vec::new(),
-        velocity_m_s: Vec::new(),
-    }
+    State { displacement_m: Vec::new(), velocity_m_s: Vec::new() }
 }
 
 /// A rig that shows all that the paper says.
@@ -71,10 +68,7 @@ fn agreeing() -> Evidence {
     };
     let speeds = [0.08, 0.12, 0.2, 0.3, 0.5, 0.8, 1.2];
     Evidence {
-        rigs: vec![Observed {
-            rig: Rig::usual(),
-            speeds: speeds.map(at_speed).to_vec(),
-        }],
+        rigs: vec![Observed { rig: Rig::usual(), speeds: speeds.map(at_speed).to_vec() }],
         wet: Vec::new(),
     }
 }
@@ -112,21 +106,14 @@ fn towards_mean(shot: &mut Shot, speed_m_s: f64) {
 
 fn decide(id: &str, evidence: &Evidence) -> Finding {
     let all = claims().unwrap();
-    let evaluator = all
-        .into_iter()
-        .find(|evaluator| evaluator.claim.id == id)
-        .unwrap();
+    let evaluator = all.into_iter().find(|evaluator| evaluator.claim.id == id).unwrap();
     evaluator.decide(evidence)
 }
 
 fn broken((_, tapped, change): &(&str, bool, Change)) -> Evidence {
     let mut evidence = agreeing();
     for at in &mut evidence.rigs[0].speeds {
-        let shots = if *tapped {
-            &mut at.tapped
-        } else {
-            &mut at.loose
-        };
+        let shots = if *tapped { &mut at.tapped } else { &mut at.loose };
         shots.iter_mut().for_each(|shot| change(shot, at.speed_m_s));
     }
     evidence
@@ -168,9 +155,7 @@ fn a_claim_that_half_of_the_rigs_show_holds_in_part() {
 fn gaps_of_a_millimetre_are_not_small() {
     let mut evidence = agreeing();
     for at in &mut evidence.rigs[0].speeds {
-        at.tapped
-            .iter_mut()
-            .for_each(|shot| shot.gaps_after_m[0] = 2e-3);
+        at.tapped.iter_mut().for_each(|shot| shot.gaps_after_m[0] = 2e-3);
     }
     assert_eq!(decide("gaps-left", &evidence).verdict, Verdict::Fails);
 }
@@ -189,12 +174,7 @@ fn what_was_not_seen_is_not_decidable() {
         assert_eq!(verdict, Verdict::NotDecidable, "{}", evaluator.claim.id);
     }
     // Missing pulses are not a spread of nothing.
-    for id in [
-        "loose-spread",
-        "taps-shrink-own",
-        "return-spreads-own",
-        "return-longer",
-    ] {
+    for id in ["loose-spread", "taps-shrink-own", "return-spreads-own", "return-longer"] {
         assert_eq!(decide(id, &blind).verdict, Verdict::NotDecidable, "{id}");
     }
 }
@@ -216,9 +196,7 @@ fn series_without_pulses_do_not_count_beside_those_that_have_them() {
 fn strikers_that_all_stay_do_not_rebound_differently() {
     let mut evidence = agreeing();
     for at in &mut evidence.rigs[0].speeds {
-        at.loose
-            .iter_mut()
-            .for_each(|shot| shot.rebound_m_s = f64::NAN);
+        at.loose.iter_mut().for_each(|shot| shot.rebound_m_s = f64::NAN);
     }
     assert_eq!(decide("rebounds-differ", &evidence).verdict, Verdict::Fails);
 }
@@ -227,23 +205,13 @@ fn strikers_that_all_stay_do_not_rebound_differently() {
 /// √(1/n) with n in place of n − 1, as any bootstrap has it.
 #[test]
 fn the_bootstrap_s_error_of_a_mean_is_that_of_theory() {
-    let numbers: Vec<f64> = (0..20)
-        .map(|at| {
-            if at % 2 == 0 {
-                1f64.exp()
-            } else {
-                (-1f64).exp()
-            }
-        })
-        .collect();
+    let numbers: Vec<f64> =
+        (0..20).map(|at| if at % 2 == 0 { 1f64.exp() } else { (-1f64).exp() }).collect();
     let found = typical(&numbers);
     assert!(found.value.abs() < 1e-12);
     let expected = 1.96 * (1f64 / 20.0).sqrt();
     // A thousand draws give a standard deviation to 1/√2000; four times that.
-    assert!(
-        (found.error / expected - 1.0).abs() < 4.0 / 44.7,
-        "{found:?}"
-    );
+    assert!((found.error / expected - 1.0).abs() < 4.0 / 44.7, "{found:?}");
 }
 
 #[test]
@@ -253,11 +221,7 @@ fn the_design_tries_every_level_of_every_factor_about_the_preset() {
     for (at, factor) in FACTORS.iter().enumerate() {
         let usual = design.experiment.get(factor.path).unwrap();
         // Rounding of a unit's conversion.
-        assert!(
-            (usual - factor.usual()).abs() <= 1e-12 * usual,
-            "{}",
-            factor.name
-        );
+        assert!((usual - factor.usual()).abs() <= 1e-12 * usual, "{}", factor.name);
         for level in factor.levels {
             let single = |rig: &Rig| {
                 let others = FACTORS.iter().enumerate().filter(|(other, _)| *other != at);
@@ -300,11 +264,7 @@ fn a_small_design_is_run_and_judged_whatever_the_threads() {
     for evaluated in &claims.evaluated {
         assert!(page.contains(&evaluated.claim.statement));
         // Gaps, rebounds and times of flight are there at every speed.
-        assert!(
-            evaluated.finding.value.is_finite(),
-            "{}",
-            evaluated.claim.id
-        );
+        assert!(evaluated.finding.value.is_finite(), "{}", evaluated.claim.id);
     }
     assert!(page.contains("| as the preset |") && page.contains("| friction 0.2 |"));
     assert!(page.contains("| as the preset, wet |"));
@@ -312,10 +272,7 @@ fn a_small_design_is_run_and_judged_whatever_the_threads() {
     let [dry, wet] =
         [&evidence.rigs[0], &evidence.wet[0]].map(|seen| seen.speeds[2].tapped[0].incident_s);
     assert!((wet / dry - 1.0).abs() > 1e-3, "{dry} {wet}");
-    let only_dry = Evidence {
-        wet: Vec::new(),
-        ..evidence.clone()
-    };
+    let only_dry = Evidence { wet: Vec::new(), ..evidence.clone() };
     let again = RigClaims::evaluate(&design, &only_dry).unwrap();
     for (one, two) in claims.evaluated.iter().zip(&again.evaluated) {
         assert_eq!(one.finding.value.to_bits(), two.finding.value.to_bits());
@@ -326,14 +283,10 @@ fn a_small_design_is_run_and_judged_whatever_the_threads() {
 
 #[test]
 fn an_experiment_without_a_push_is_no_rig_to_vary() {
-    let text = TEXT.replace(
-        "[near_end]\npush = \"spring\"\nforce = \"0.24 N\"\nstiffness = \"100 N/m\"",
-        "",
-    );
-    let design = Design {
-        experiment: Experiment::from_text("small.toml", &text).unwrap(),
-        ..small()
-    };
+    let text = TEXT
+        .replace("[near_end]\npush = \"spring\"\nforce = \"0.24 N\"\nstiffness = \"100 N/m\"", "");
+    let design =
+        Design { experiment: Experiment::from_text("small.toml", &text).unwrap(), ..small() };
     let error = observe(&design, &Silent).unwrap_err().to_string();
     assert!(error.contains("near_end.force"), "{error}");
 }

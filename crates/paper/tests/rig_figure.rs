@@ -10,9 +10,7 @@ fn texts(file: &str) -> String {
     let experiment = Experiment::from_text("test.toml", file).unwrap();
     let svg = figures::rig(&experiment).unwrap().figure().svg();
     let document = roxmltree::Document::parse(&svg).unwrap();
-    let labels = document
-        .descendants()
-        .filter_map(|n| n.attribute("aria-label"));
+    let labels = document.descendants().filter_map(|n| n.attribute("aria-label"));
     let joined: Vec<&str> = labels.collect();
     joined.join(" ").replace('\u{a0}', " ")
 }
@@ -24,51 +22,16 @@ fn changed(from: &str, to: &str) -> String {
 
 /// A number of the file, another one, and how the drawing writes both.
 const NUMBERS: [(&str, &str, &str, &str); 10] = [
-    (
-        "radius = \"6.35 mm\"",
-        "radius = \"6.4 mm\"",
-        "R = 6.35 mm",
-        "R = 6.4 mm",
-    ),
-    (
-        "mass = \"8.54 g\"",
-        "mass = \"8.6 g\"",
-        "m = 8.54 g",
-        "m = 8.6 g",
-    ),
+    ("radius = \"6.35 mm\"", "radius = \"6.4 mm\"", "R = 6.35 mm", "R = 6.4 mm"),
+    ("mass = \"8.54 g\"", "mass = \"8.6 g\"", "m = 8.54 g", "m = 8.6 g"),
     ("count = 40", "count = 39", "40 beads", "39 beads"),
     ("\"0.5 m/s\"", "\"0.7 m/s\"", "v0 = 0.5 m/s", "v0 = 0.7 m/s"),
-    (
-        "bead = 7",
-        "bead = 8",
-        "split bead n = 7",
-        "split bead n = 8",
-    ),
-    (
-        "force = \"0.24 N\"",
-        "force = \"300 mN\"",
-        "F = 0.24 N",
-        "F = 0.3 N",
-    ),
-    (
-        "mass = \"4.5 kg\"",
-        "mass = \"5200 g\"",
-        "structure, 4.5 kg",
-        "structure, 5.2 kg",
-    ),
-    (
-        "mass = \"6 kg\"",
-        "mass = \"7.5 kg\"",
-        "noise, 6 kg",
-        "noise, 7.5 kg",
-    ),
+    ("bead = 7", "bead = 8", "split bead n = 7", "split bead n = 8"),
+    ("force = \"0.24 N\"", "force = \"300 mN\"", "F = 0.24 N", "F = 0.3 N"),
+    ("mass = \"4.5 kg\"", "mass = \"5200 g\"", "structure, 4.5 kg", "structure, 5.2 kg"),
+    ("mass = \"6 kg\"", "mass = \"7.5 kg\"", "noise, 6 kg", "noise, 7.5 kg"),
     ("bits = 16", "bits = 12", "16-bit ADC", "12-bit ADC"),
-    (
-        "rate = \"500 kHz\"",
-        "rate = \"1 MHz\"",
-        "500 kHz",
-        "1000 kHz",
-    ),
+    ("rate = \"500 kHz\"", "rate = \"1 MHz\"", "500 kHz", "1000 kHz"),
 ];
 
 #[test]
@@ -107,13 +70,7 @@ fn without_a_description_only_what_is_computed_with_is_drawn() {
     for absent in ["actuator", "AISI", "kg", "F =", "ADC", "piezo", "photogate"] {
         assert!(!bare.contains(absent), "{absent} in {bare}");
     }
-    for present in [
-        "rigid wall",
-        "40 beads",
-        "motor oil",
-        "striker",
-        "half-bead",
-    ] {
+    for present in ["rigid wall", "40 beads", "motor oil", "striker", "half-bead"] {
         assert!(bare.contains(present), "{present} in {bare}");
     }
 }
@@ -122,10 +79,7 @@ fn without_a_description_only_what_is_computed_with_is_drawn() {
 fn what_the_model_computes_with_is_drawn_in_place_of_the_description() {
     let pushed = format!("{MOTOR}\n[near_end]\npush = \"constant\"\nforce = \"0.5 N\"\n");
     let found = texts(&pushed);
-    assert!(
-        found.contains("F = 0.5 N") && !found.contains("0.24 N"),
-        "{found}"
-    );
+    assert!(found.contains("F = 0.5 N") && !found.contains("0.24 N"), "{found}");
     let moving = changed("kind = \"half-bead\"", "kind = \"stop\"\nmass = \"3 kg\"");
     assert!(moving.contains("structure, 3 kg"), "{moving}");
 }

@@ -183,21 +183,13 @@ impl Run {
                 false => Ok(done),
             }
         })?;
-        let BatchResult {
-            rows,
-            error_control,
-            ..
-        } = result;
+        let BatchResult { rows, error_control, .. } = result;
         let found = if is_curve {
             let laws = [Column::Incident, Column::Reflected].map(|of| rows.law(of, self.accuracy));
             let laws = laws.each_ref().map(|(law, least)| (law, least.clone()));
             let found = results::outline(&self.experiment.inner, calibration.as_ref(), laws);
             let found = json::object(py, &found)?.cast_into::<PyDict>()?;
-            errors = rows
-                .failed
-                .into_iter()
-                .map(|it| (it.place, it.why))
-                .collect();
+            errors = rows.failed.into_iter().map(|it| (it.place, it.why)).collect();
             found.set_item("warnings", list(py, warnings)?)?;
             found
         } else {
@@ -234,9 +226,8 @@ impl Run {
 /// All shards of a folder put together.
 #[pyfunction]
 pub(crate) fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
-    let whole = Job::alone().run(py, |_| {
-        BatchResult::gather(&[Path::new(&folder)]).map_err(Failure::from)
-    })?;
+    let whole = Job::alone()
+        .run(py, |_| BatchResult::gather(&[Path::new(&folder)]).map_err(Failure::from))?;
     let columns = PyDict::new(py);
     for (name, values) in COLUMNS.iter().zip(whole.rows.columns) {
         columns.set_item(name, values.into_pyarray(py))?;

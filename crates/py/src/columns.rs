@@ -15,44 +15,23 @@ const COLUMNS: [Column; 16] = [
     ("accuracy_reached", |shot| shot.accuracy_reached),
     ("sensor_peak_n", sensor_peak),
     ("wall_peak_n", |shot| Some(shot.wall()?.value)),
-    ("returning_peak_n", |shot| {
-        Some(shot.passage.as_ref().ok()?.reflected?.value)
-    }),
-    ("incident_width_s", |shot| {
-        shot.passage.as_ref().ok()?.incident_width_s
-    }),
-    ("wall_width_s", |shot| {
-        shot.passage.as_ref().ok()?.wall_width_s
-    }),
-    ("reflected_width_s", |shot| {
-        shot.passage.as_ref().ok()?.reflected_width_s
-    }),
+    ("returning_peak_n", |shot| Some(shot.passage.as_ref().ok()?.reflected?.value)),
+    ("incident_width_s", |shot| shot.passage.as_ref().ok()?.incident_width_s),
+    ("wall_width_s", |shot| shot.passage.as_ref().ok()?.wall_width_s),
+    ("reflected_width_s", |shot| shot.passage.as_ref().ok()?.reflected_width_s),
     ("pulse_speed_beads_per_s", |shot| shot.pulse_speed_beads_s),
     ("striker_rebound_m_s", |shot| shot.rebound?.end_m_s),
     ("duration_s", |shot| Some(shot.duration_s)),
-    ("competing_time_s", |shot| {
-        Some(shot.competing_arrival()?.time_s)
-    }),
-    ("competing_peak_n", |shot| {
-        Some(shot.competing_arrival()?.value)
-    }),
-    ("competing_reflected_time_s", |shot| {
-        Some(shot.competing_reflected()?.time_s)
-    }),
-    ("competing_reflected_peak_n", |shot| {
-        Some(shot.competing_reflected()?.value)
-    }),
+    ("competing_time_s", |shot| Some(shot.competing_arrival()?.time_s)),
+    ("competing_peak_n", |shot| Some(shot.competing_arrival()?.value)),
+    ("competing_reflected_time_s", |shot| Some(shot.competing_reflected()?.time_s)),
+    ("competing_reflected_peak_n", |shot| Some(shot.competing_reflected()?.value)),
 ];
 
 /// The incident pulse's, or the largest where none is seen to pass.
 fn sensor_peak(shot: &Shot) -> Option<f64> {
     let passage = shot.passage.as_ref().ok();
-    let largest = || {
-        shot.sensor_maxima
-            .iter()
-            .map(|peak| peak.value)
-            .reduce(f64::max)
-    };
+    let largest = || shot.sensor_maxima.iter().map(|peak| peak.value).reduce(f64::max);
     passage.map(|seen| seen.incident.value).or_else(largest)
 }
 

@@ -48,10 +48,7 @@ pub struct Experiment {
 
 impl Experiment {
     fn read(inner: experiment::Experiment) -> Self {
-        Self {
-            inner,
-            changes: Vec::new(),
-        }
+        Self { inner, changes: Vec::new() }
     }
 
     fn changed(&self, change: Change) -> Result<Self, Failed> {
@@ -71,10 +68,7 @@ impl Experiment {
             }
         };
         let changes = self.changes.iter().cloned().chain([change]);
-        Ok(Self {
-            inner,
-            changes: changes.collect(),
-        })
+        Ok(Self { inner, changes: changes.collect() })
     }
 
     fn no_case(&self, name: &str) -> Failure {
@@ -82,10 +76,7 @@ impl Experiment {
             known if known.is_empty() => {
                 format!("there is no case `{name}`: the experiment has none")
             }
-            known => format!(
-                "there is no case `{name}`; expected one of {}",
-                known.join(", ")
-            ),
+            known => format!("there is no case `{name}`; expected one of {}", known.join(", ")),
         })
     }
 }
@@ -216,8 +207,7 @@ impl Experiment {
     ///     Path, value in SI, SI unit.
     fn numbers(&self) -> Vec<(String, f64, String)> {
         let all = self.inner.numbers().into_iter();
-        all.map(|named| (named.path, named.value, named.unit))
-            .collect()
+        all.map(|named| (named.path, named.value, named.unit)).collect()
     }
 
     /// One number in SI.
@@ -269,9 +259,7 @@ impl Experiment {
             (!texts.is_empty()).then_some(Change::Texts(texts)),
         ];
         let mut changes = changes.into_iter().flatten();
-        Ok(changes.try_fold(self.clone(), |experiment, change| {
-            experiment.changed(change)
-        })?)
+        Ok(changes.try_fold(self.clone(), |experiment, change| experiment.changed(change))?)
     }
 
     /// The chain of one of a campaign's cases.
@@ -299,22 +287,14 @@ impl Experiment {
             Units::Si => format!(", striker at {v} m/s"),
             Units::Dimensionless => format!(", striker at {v}"),
         });
-        format!(
-            "<Experiment {:?}: {} beads{speed}>",
-            self.inner.title(),
-            self.inner.beads()
-        )
+        format!("<Experiment {:?}: {} beads{speed}>", self.inner.title(), self.inner.beads())
     }
 }
 
 /// Names and titles of the experiments that come with the program.
 #[pyfunction]
 pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
-    let lists = [
-        experiment::presets(),
-        experiment::examples(),
-        experiment::campaigns(),
-    ];
+    let lists = [experiment::presets(), experiment::examples(), experiment::campaigns()];
     let all = lists.into_iter().flatten();
     all.map(|preset| (preset.name, preset.title())).collect()
 }

@@ -23,12 +23,7 @@ use std::path::PathBuf;
 pub(crate) type Table = (String, String);
 
 fn read((name, text): &Table, measured: &Measured, case: Option<&String>) -> Result<Data, Failure> {
-    data(
-        name,
-        text,
-        measured,
-        case.or(measured.case.as_ref()).cloned(),
-    )
+    data(name, text, measured, case.or(measured.case.as_ref()).cloned())
 }
 
 /// Contact parameters from times of flight.
@@ -147,10 +142,7 @@ fn samples(inferred: &fitting::Inferred) -> Option<(usize, Vec<f64>)> {
         fitting::More::Sampled(sampled) => {
             let posterior = sampled.posterior.as_ref().ok()?;
             let parameters = posterior.mean.len();
-            Some((
-                parameters,
-                posterior.samples.iter().flatten().copied().collect(),
-            ))
+            Some((parameters, posterior.samples.iter().flatten().copied().collect()))
         }
         _ => None,
     }

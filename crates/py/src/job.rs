@@ -52,21 +52,12 @@ impl<'py> Job<'py> {
 
     /// In one thread, without progress.
     pub(crate) fn alone() -> Self {
-        Self {
-            progress: None,
-            threads: Threads::One,
-            stop: Stop::default(),
-            counted: Stop::done,
-        }
+        Self { progress: None, threads: Threads::One, stop: Stop::default(), counted: Stop::done }
     }
 
     /// In one thread, reporting of the steps of a single shot.
     pub(crate) fn of_steps(progress: Option<Bound<'py, PyAny>>) -> Self {
-        Self {
-            progress,
-            counted: Stop::steps,
-            ..Self::alone()
-        }
+        Self { progress, counted: Stop::steps, ..Self::alone() }
     }
 
     /// Computes without Python's lock. A signal, or a progress that raises,

@@ -49,14 +49,7 @@ impl Force {
             },
             gated: true,
         };
-        Self {
-            info: Box::leak(Box::new(info)),
-            force,
-            energy,
-            first,
-            last,
-            beside,
-        }
+        Self { info: Box::leak(Box::new(info)), force, energy, first, last, beside }
     }
 }
 
@@ -98,14 +91,10 @@ fn values(
     columns: &[&[f64]],
     count: usize,
 ) -> PyResult<Vec<f64>> {
-    let arrays = columns
-        .iter()
-        .map(|column| PyArray1::from_slice(py, column));
+    let arrays = columns.iter().map(|column| PyArray1::from_slice(py, column));
     let arguments = pyo3::types::PyTuple::new(py, arrays)?;
     let returned = function.bind(py).call1(arguments)?;
-    let made = py
-        .import("numpy")?
-        .call_method1("asarray", (returned, "float64"))?;
+    let made = py.import("numpy")?.call_method1("asarray", (returned, "float64"))?;
     let array = made.extract::<PyReadonlyArray1<'_, f64>>();
     let array = array.map_err(|_| wrong_shape(count))?.to_owned_array();
     match array.len() == count {
@@ -150,10 +139,7 @@ impl Law for OfPython {
 
     fn force(&self, _k: &Columns, _at: usize, contact: Closed) -> f64 {
         let columns: [&[f64]; 2] = [&[contact.overlap], &[contact.rate]];
-        self.called(&self.force, &columns)
-            .first()
-            .copied()
-            .unwrap_or(0.0)
+        self.called(&self.force, &columns).first().copied().unwrap_or(0.0)
     }
 
     fn energy(&self, _k: &Columns, _at: usize, overlap: f64, _largest: f64) -> f64 {
@@ -185,10 +171,7 @@ impl Replacing {
             let contacts = force.first..=force.last.unwrap_or(usize::MAX);
             (contacts, force.beside, Arc::new(law))
         };
-        Self {
-            laws: forces.iter().map(law).collect(),
-            raised: raised.clone(),
-        }
+        Self { laws: forces.iter().map(law).collect(), raised: raised.clone() }
     }
 
     /// Whether the energy of all contacts is known.

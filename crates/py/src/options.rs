@@ -24,10 +24,7 @@ pub(crate) fn options(verb: &str) -> Vec<(String, Option<String>, String)> {
         Some((
             option.get_long()?.replace('-', "_"),
             default.or_else(|| flag.then(|| "false".to_owned())),
-            option
-                .get_help()
-                .map(ToString::to_string)
-                .unwrap_or_default(),
+            option.get_help().map(ToString::to_string).unwrap_or_default(),
         ))
     };
     command.get_arguments().filter_map(one).collect()

@@ -106,11 +106,7 @@ pub(crate) fn measure<'py>(
         let mut found = measuring::json(&measured, &curves);
         let wrong = measuring::evaluate(&measured).err();
         found["verdict"] = wrong.map_or(serde_json::Value::Null, |failure| {
-            failure
-                .report(false)
-                .trim_start_matches("error: ")
-                .trim_end()
-                .into()
+            failure.report(false).trim_start_matches("error: ").trim_end().into()
         });
         let tables = [
             ("shots.csv", shots_csv(&measured.shots)),

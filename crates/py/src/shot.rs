@@ -101,10 +101,7 @@ pub(crate) fn shot<'py>(
     let reported = json::object(py, &found)?.cast_into::<PyDict>()?;
     let warnings: PyResult<Vec<_>> = warnings.iter().map(|odd| finding(py, odd)).collect();
     reported.set_item("warnings", warnings?)?;
-    reported.set_item(
-        "trace",
-        shot.trace.as_ref().map(|it| trace(py, it)).transpose()?,
-    )?;
+    reported.set_item("trace", shot.trace.as_ref().map(|it| trace(py, it)).transpose()?)?;
     reported.set_item("velocities_m_s", velocities(py, &shot))?;
     Ok(reported)
 }

@@ -48,10 +48,9 @@ impl From<Result<Residuals, ModelError>> for Outcome {
 impl From<Outcome> for Result<Residuals, ModelError> {
     fn from(outcome: Outcome) -> Self {
         match outcome {
-            Outcome::Residuals(standardised, ln_sigmas) => Ok(Residuals {
-                standardised,
-                ln_sigmas,
-            }),
+            Outcome::Residuals(standardised, ln_sigmas) => {
+                Ok(Residuals { standardised, ln_sigmas })
+            }
             Outcome::Failed(why) => Err(ModelError(why)),
         }
     }
@@ -77,11 +76,7 @@ impl Likelihood {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let class = py.get_type::<Self>().into_any();
-        let parts = (
-            self.table.clone(),
-            self.experiment.clone(),
-            self.options.clone(),
-        );
+        let parts = (self.table.clone(), self.experiment.clone(), self.options.clone());
         Ok((class, parts.into_pyobject(py)?))
     }
 
@@ -132,9 +127,7 @@ impl Elsewhere {
     }
 
     fn waited(&self, batches: &[Batch]) -> PyResult<Vec<Outcomes>> {
-        let named = batches
-            .iter()
-            .map(|batch| (batch.name.short(), &batch.points));
+        let named = batches.iter().map(|batch| (batch.name.short(), &batch.points));
         let named: Vec<_> = named.collect();
         let waiting = Python::attach(|py| self.compute.call1(py, (named,)))?;
         loop {
@@ -167,16 +160,9 @@ pub(crate) fn fit_spread<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments = &likelihood.arguments;
-    let job = Job::pooled(
-        progress,
-        arguments.modelled.threads.map_or(0, |threads| threads.0),
-    );
+    let job = Job::pooled(progress, arguments.modelled.threads.map_or(0, |threads| threads.0));
     let stop = job.stop.clone();
-    let elsewhere = compute.map(|compute| Elsewhere {
-        compute,
-        stop,
-        gone: OnceLock::new(),
-    });
+    let elsewhere = compute.map(|compute| Elsewhere { compute, stop, gone: OnceLock::new() });
     let found = job.run(py, |_| {
         let problem = &likelihood.inner;
         let Some(elsewhere) = &elsewhere else {

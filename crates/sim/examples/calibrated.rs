@@ -14,14 +14,7 @@ use hertzchain_sim::{Batch, BatchOptions, BatchResult, Column, ErrorControl, Sha
 use std::error::Error;
 use std::time::Instant;
 
-const PRESETS: [&str; 6] = [
-    "hertz",
-    "hertz-viscoelastic",
-    "dry",
-    "pump",
-    "motor",
-    "gear",
-];
+const PRESETS: [&str; 6] = ["hertz", "hertz-viscoelastic", "dry", "pump", "motor", "gear"];
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -51,12 +44,7 @@ fn main() -> Result<(), Failure> {
 fn row(name: &str, count: usize, accuracy: f64) -> Result<String, Failure> {
     let (found, time_us) = run(name, count, accuracy, ErrorControl::Calibrated)?;
     let (_, per_shot_us) = run(name, count, accuracy, ErrorControl::PerShot)?;
-    let (exact, _) = run(
-        name,
-        count,
-        (accuracy / 100.0).max(1e-8),
-        ErrorControl::PerShot,
-    )?;
+    let (exact, _) = run(name, count, (accuracy / 100.0).max(1e-8), ErrorControl::PerShot)?;
     let (mut worst, mut above, mut understated) = (0.0_f64, 0, 0);
     for place in 0..count {
         let error = [Column::Incident, Column::Reflected].map(|of| {
@@ -83,11 +71,7 @@ fn run(
     error_control: ErrorControl,
 ) -> Result<(BatchResult, f64), Failure> {
     let experiment = preset(name)?;
-    let options = BatchOptions {
-        accuracy,
-        error_control,
-        ..BatchOptions::of(&experiment)
-    };
+    let options = BatchOptions { accuracy, error_control, ..BatchOptions::of(&experiment) };
     let speeds = parse_speeds(&format!("log:0.075:1.23:{count}"))?;
     let batch = Batch::new(&experiment, speeds, options)?;
     let begun = Instant::now();

@@ -13,11 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let campaign = experiment.campaign();
         let random = |purpose| RandomStream::new(plan.seed, series.number, purpose);
         let mut bench = Bench::assemble(experiment, &mut random(Purpose::Assembly))?;
-        println!(
-            "{}: open after laying {}",
-            series.name,
-            open(&bench.gaps_m())
-        );
+        println!("{}: open after laying {}", series.name, open(&bench.gaps_m()));
         let (begun, mut longest_s, mut steps) = (Instant::now(), 0.0f64, 0);
         for _ in 0..campaign.taps {
             let rest = bench.tap(campaign.tap_speed_m_s)?;

@@ -25,20 +25,11 @@ type Change = (&'static str, &'static [(&'static str, f64)]);
 const CHANGES: [Change; 10] = [
     ("as the preset", &[]),
     ("no gaps as laid", &[("campaign.laying.gap_scatter", 0.0)]),
-    (
-        "radii spread by 0.02 %",
-        &[("campaign.laying.radius_spread", 2e-4)],
-    ),
+    ("radii spread by 0.02 %", &[("campaign.laying.radius_spread", 2e-4)]),
     ("no taps", &[("campaign.taps", 0.0)]),
     ("no slope", &[("track.incline", 0.0)]),
-    (
-        "stop a thousand times as heavy",
-        &[("far_end.mass", 4500.0)],
-    ),
-    (
-        "push 0.96 N",
-        &[("near_end.force", 0.96), ("near_end.stiffness", 400.0)],
-    ),
+    ("stop a thousand times as heavy", &[("far_end.mass", 4500.0)]),
+    ("push 0.96 N", &[("near_end.force", 0.96), ("near_end.stiffness", 400.0)]),
     ("friction 0.2", &[("track.friction", 0.2)]),
     ("friction 0.0125", &[("track.friction", 0.0125)]),
     ("friction 0.001", &[("track.friction", 1e-3)]),
@@ -151,10 +142,8 @@ fn departures(plan: &Plan, series: &Series, shots: usize) -> Outcome<Departures>
         times_s: [Vec::new(), Vec::new()],
         by_load_s: [f64::NAN; 2],
     };
-    let (mut more_n, mut random) = (
-        0.0,
-        RandomStream::new(plan.seed, series.number, Purpose::Shot(0)),
-    );
+    let (mut more_n, mut random) =
+        (0.0, RandomStream::new(plan.seed, series.number, Purpose::Shot(0)));
     for _ in 0..shots {
         for _ in 0..campaign.taps {
             let tap_m_s = true_speed_m_s(&campaign.actuator, campaign.tap_speed_m_s, &mut random);
@@ -202,12 +191,7 @@ impl Departures {
     fn cells(&self) -> String {
         let mut cells = format!("{} % |", mean(&self.load, 1e2, 1));
         for (times_s, by_load_s) in self.times_s.iter().zip(self.by_load_s) {
-            let _ = write!(
-                cells,
-                " {} | {:+.2} |",
-                mean(times_s, 1e6, 2),
-                1e6 * by_load_s
-            );
+            let _ = write!(cells, " {} | {:+.2} |", mean(times_s, 1e6, 2), 1e6 * by_load_s);
         }
         cells
     }

@@ -21,10 +21,7 @@ fn cost() -> Result<(), Box<dyn Error + Send + Sync>> {
     let folder = std::env::temp_dir().join(format!("hertzchain-cost-{}", std::process::id()));
     for shots in [0_usize, 100, 1000, 4000] {
         let speeds = (0..shots).map(|i| 0.1 + 1.1 * i as f64 / shots as f64);
-        let options = BatchOptions {
-            accuracy: 1e-5,
-            ..BatchOptions::of(&dry)
-        };
+        let options = BatchOptions { accuracy: 1e-5, ..BatchOptions::of(&dry) };
         let batch = Batch::new(&dry, speeds.collect(), options)?;
         let (mut all, mut shooting) = (f64::INFINITY, f64::INFINITY);
         let mut bytes = 0;

@@ -103,10 +103,7 @@ pub(crate) fn margin(plan: &Plan) -> f64 {
 /// The accuracy reached, from the changes that finer runs make, with a margin, and the
 /// tolerance per step, 0 for fixed steps.
 pub fn reached(changes: [f64; 2], margin: f64, tolerance: f64) -> f64 {
-    let bounds = changes
-        .iter()
-        .zip(OF_CHANGES)
-        .map(|(change, of)| margin * of * change);
+    let bounds = changes.iter().zip(OF_CHANGES).map(|(change, of)| margin * of * change);
     bounds.fold(OF_TOLERANCE * tolerance, f64::max)
 }
 
@@ -163,9 +160,7 @@ pub(crate) fn equal_steps(plan: &Plan) -> Option<(f64, bool)> {
             return None;
         };
         let share = (accuracy / tighter).ln() / (looser / tighter).ln();
-        (0.0..=1.0)
-            .contains(&share)
-            .then(|| (shorter * (longer / shorter).powf(share), openings))
+        (0.0..=1.0).contains(&share).then(|| (shorter * (longer / shorter).powf(share), openings))
     };
     EQUAL_STEPS.windows(2).find_map(between)
 }

@@ -216,9 +216,7 @@ impl Batch {
                 .text("set", self.options.set.name())
                 .numbers("speeds_m_s", &self.speeds_m_s);
             let numbers = self.numbers.iter();
-            let all = numbers.fold(inputs, |inputs, (path, values)| {
-                inputs.numbers(path, values)
-            });
+            let all = numbers.fold(inputs, |inputs, (path, values)| inputs.numbers(path, values));
             all.fingerprint()
         })
     }
@@ -311,9 +309,7 @@ impl Batch {
             ErrorControl::Calibrated => {}
         }
         let numbers = self.numbers.iter().map(|(_, column)| &column[..]);
-        let columns: Vec<&[f64]> = std::iter::once(&self.speeds_m_s[..])
-            .chain(numbers)
-            .collect();
+        let columns: Vec<&[f64]> = std::iter::once(&self.speeds_m_s[..]).chain(numbers).collect();
         let places = Calibration::places(&columns).ok_or("so few shots are computed sooner so")?;
         let planned = self.planned(&places).into_iter().flatten();
         let plans: Vec<Plan> = planned.map(|(plan, _)| plan).collect();
@@ -324,9 +320,7 @@ impl Batch {
         match (self.options.error_control, calibration) {
             (ErrorControl::None, _) => Control::None,
             (_, Ok(calibration)) => Control::Calibrated(calibration),
-            (_, Err(_)) => Control::PerShot {
-                checked: self.options.checked,
-            },
+            (_, Err(_)) => Control::PerShot { checked: self.options.checked },
         }
     }
 
@@ -376,9 +370,7 @@ impl Batch {
 
     fn planned(&self, places: &[usize]) -> Vec<Planned> {
         let chunks = places.par_chunks(NEIGHBOURS);
-        chunks
-            .flat_map_iter(|chunk| self.in_sequence(chunk))
-            .collect()
+        chunks.flat_map_iter(|chunk| self.in_sequence(chunk)).collect()
     }
 
     /// Plans of consecutive shots: the experiment is changed where numbers do.
@@ -437,12 +429,7 @@ const PLANNED_ALONE: usize = 2;
 
 impl<'a> Sequence<'a> {
     fn new(experiment: Cow<'a, Experiment>, values: Vec<f64>) -> Self {
-        Self {
-            experiment,
-            values,
-            shots: 0,
-            like: None,
-        }
+        Self { experiment, values, shots: 0, like: None }
     }
 
     fn plan(&mut self, batch: &Batch, speed_m_s: f64) -> Planned {
@@ -450,10 +437,7 @@ impl<'a> Sequence<'a> {
             self.like = self.like(batch);
         }
         self.shots += 1;
-        let like = self
-            .like
-            .as_ref()
-            .filter(|_| speed_m_s.is_finite() && speed_m_s > 0.0);
+        let like = self.like.as_ref().filter(|_| speed_m_s.is_finite() && speed_m_s > 0.0);
         match like.and_then(|plan| plan.at_speed(speed_m_s)) {
             Some(plan) => Ok((plan, Vec::new())),
             None => batch.plan(&self.experiment, speed_m_s),

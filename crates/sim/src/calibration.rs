@@ -113,10 +113,7 @@ impl Calibration {
     /// Why there is none.
     pub fn new(plans: &[Plan], set: InstructionSet) -> Result<Self, &'static str> {
         let first = plans.first().ok_or("no shot can be computed")?;
-        let system = first
-            .chain
-            .system()
-            .map_err(|_| "no shot can be computed")?;
+        let system = first.chain.system().map_err(|_| "no shot can be computed")?;
         let family = |plan: &Plan| belongs(plan, (first, &system));
         if !plans.iter().all(family) {
             return Err("calibration is for uniform rows that fly free, timed by peaks");
@@ -126,13 +123,8 @@ impl Calibration {
         let sample = Sample::new(plans, own, set)?;
         let mut best: Option<(f64, Self)> = None;
         for (precision, step, openings) in SETTINGS {
-            let setting = Setting {
-                step,
-                precision: Some(precision),
-                openings,
-                shapes: false,
-                passed: true,
-            };
+            let setting =
+                Setting { step, precision: Some(precision), openings, shapes: false, passed: true };
             let least = best.as_ref().map_or(per_shot, |(least, _)| *least);
             if cost(&setting, precision) >= least {
                 break;
@@ -185,10 +177,7 @@ impl Calibration {
 
     /// The shot with its estimate, if that is what was asked.
     fn right_enough(&self, mut shot: Shot) -> Option<Shot> {
-        let Conditioning {
-            forces,
-            interpolation,
-        } = shot.conditioning;
+        let Conditioning { forces, interpolation } = shot.conditioning;
         let reached = self.error * forces + MARGIN * interpolation;
         let sure = is_alone(&shot) && !may_flip(shot.passage.as_ref().ok()?, self.height_error);
         let right = reached <= shot.accuracy_asked && sure;
@@ -218,12 +207,8 @@ impl<'a> Sample<'a> {
         let plans: Vec<&Plan> = plans.iter().collect();
         let systems = systems(&plans);
         let run = |step: f64| {
-            let setting = Setting {
-                step,
-                precision: Some(Precision::Double),
-                openings: true,
-                ..own
-            };
+            let setting =
+                Setting { step, precision: Some(Precision::Double), openings: true, ..own };
             let shots = run_lanes(&plans, &systems, set, &setting).into_iter();
             let shots: Option<Vec<Shot>> = shots.collect();
             shots.ok_or("calibration shots are not finished by equal steps")
@@ -240,12 +225,7 @@ impl<'a> Sample<'a> {
                 fine.change(coarse) <= fine.accuracy_asked / TIGHTER
             };
             if exact.iter().zip(&coarse).all(right) {
-                return Ok(Self {
-                    plans,
-                    systems,
-                    exact,
-                    set,
-                });
+                return Ok(Self { plans, systems, exact, set });
             }
         }
         Err("calibration shots do not converge")
@@ -286,13 +266,7 @@ impl<'a> Sample<'a> {
         let reached = right.iter().filter_map(|shot| shot.accuracy_reached);
         let reached = reached.fold(0.0, f64::max);
         let missed = 1.0 - right.len() as f64 / self.plans.len() as f64;
-        Some((
-            Calibration {
-                reached,
-                ..calibration
-            },
-            missed,
-        ))
+        Some((Calibration { reached, ..calibration }, missed))
     }
 }
 
@@ -306,22 +280,14 @@ fn is_alone(shot: &Shot) -> bool {
 
 /// Cost of a shot, in steps of single precision a contact time.
 fn cost(setting: &Setting, precision: Precision) -> f64 {
-    let double = if precision == Precision::Double {
-        OF_DOUBLE
-    } else {
-        1.0
-    };
+    let double = if precision == Precision::Double { OF_DOUBLE } else { 1.0 };
     let openings = if setting.openings { OF_OPENINGS } else { 1.0 };
     double * openings / setting.step
 }
 
 /// Whether a plan is of a family.
 fn belongs(plan: &Plan, (first, system): (&Plan, &System)) -> bool {
-    let like = || {
-        plan.chain
-            .system()
-            .is_ok_and(|own| own.has_shape_of(system))
-    };
+    let like = || plan.chain.system().is_ok_and(|own| own.has_shape_of(system));
     suits(plan) && accuracy::is_uniform(plan) && fit_together(first, plan) && like()
 }
 
@@ -335,7 +301,5 @@ fn may_flip(passage: &Passage, height_error: f64) -> bool {
 fn extremes(column: &[f64]) -> impl Iterator<Item = usize> {
     let places = || (0..column.len()).filter(|&at| column[at].is_finite());
     let by = |&a: &usize, &b: &usize| column[a].total_cmp(&column[b]);
-    [places().min_by(by), places().max_by(by)]
-        .into_iter()
-        .flatten()
+    [places().min_by(by), places().max_by(by)].into_iter().flatten()
 }

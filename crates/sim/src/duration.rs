@@ -96,10 +96,7 @@ pub(crate) fn end(plan: &Plan, system: &System) -> End {
     let open = plan.duration_s.is_none();
     let struck = matches!(plan.chain.start, Start::Striker { .. });
     let followed = plan.rebound && struck && plan.chain.suspension_m.is_none();
-    let looks = Looks {
-        interval_s: bead_times(1.0 / LOOKS),
-        returns: RETURNS,
-    };
+    let looks = Looks { interval_s: bead_times(1.0 / LOOKS), returns: RETURNS };
     End {
         longest_s,
         most_steps: match open && wall {

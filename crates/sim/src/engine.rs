@@ -78,11 +78,7 @@ fn in_blocks<T: Send>(
         .par_iter()
         .flat_map_iter(|block| {
             let together: Vec<&Plan> = block.iter().map(|&at| plans[at]).collect();
-            block
-                .iter()
-                .copied()
-                .zip(run(&together))
-                .collect::<Vec<_>>()
+            block.iter().copied().zip(run(&together)).collect::<Vec<_>>()
         })
         .collect();
     results.sort_unstable_by_key(|(at, _)| *at);
@@ -116,18 +112,13 @@ fn run_block(
         _ => shoot_checked(plan),
     };
     let shots = plans.iter().zip(fast);
-    shots
-        .map(|(plan, shot)| shot.map_or_else(|| alone(plan), Ok))
-        .collect()
+    shots.map(|(plan, shot)| shot.map_or_else(|| alone(plan), Ok)).collect()
 }
 
 /// Shots with the step for their accuracy alone.
 fn unchecked(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
     let once = |own: Setting| {
-        let bare = Setting {
-            shapes: false,
-            ..own
-        };
+        let bare = Setting { shapes: false, ..own };
         run_lanes(plans, &systems(plans), set, &bare)
     };
     let own = plans.first().and_then(|plan| Setting::of(plan));
@@ -148,9 +139,7 @@ fn blocks(plans: &[&Plan]) -> Vec<Vec<usize>> {
             Some(block) => block.push(at),
             None => open.push(vec![at]),
         }
-        let full = open
-            .iter()
-            .position(|block| block.len() == Precision::Single.lanes());
+        let full = open.iter().position(|block| block.len() == Precision::Single.lanes());
         blocks.extend(full.map(|at| open.swap_remove(at)));
     }
     blocks.extend(open);
@@ -225,11 +214,7 @@ fn accurate(plan: &Plan, mut shot: Shot, longer: [&Shot; 2]) -> Option<Shot> {
         let flat = OF_FLAT * shot.peaks_change(longer[at]) * step * shot.conditioning.forces;
         LONGER_STEPS[at].1 * shot.change(longer[at]).max(flat)
     });
-    let margin = if accuracy::is_gentle(plan) {
-        1.0
-    } else {
-        OF_SHARP
-    };
+    let margin = if accuracy::is_gentle(plan) { 1.0 } else { OF_SHARP };
     let reached = near.max(far) * margin;
     // Both changes may be small by chance: they confirm the accuracy asked and no better one.
     shot.accuracy_reached = Some(reached.max(shot.accuracy_asked));
@@ -255,13 +240,7 @@ pub(crate) struct Setting {
 impl Setting {
     pub(crate) fn of(plan: &Plan) -> Option<Self> {
         let (step, openings) = accuracy::equal_steps(plan)?;
-        Some(Self {
-            step,
-            precision: None,
-            openings,
-            shapes: true,
-            passed: false,
-        })
+        Some(Self { step, precision: None, openings, shapes: true, passed: false })
     }
 
     fn precision(&self, plan: &Plan, system: &System) -> Precision {
@@ -274,12 +253,7 @@ impl Setting {
 
     /// The same with longer steps, to compare with; these shots wait for whatever may come.
     pub(crate) fn longer(self, times: f64) -> Self {
-        Self {
-            step: times * self.step,
-            shapes: false,
-            passed: false,
-            ..self
-        }
+        Self { step: times * self.step, shapes: false, passed: false, ..self }
     }
 
     fn end(&self, plan: &Plan) -> End {
@@ -299,9 +273,8 @@ pub(crate) fn run_lanes(
     setting: &Setting,
 ) -> Vec<Option<Shot>> {
     let ready = plans.iter().zip(systems);
-    let ready: Vec<(&Plan, &System)> = ready
-        .filter_map(|(plan, system)| Some((*plan, &**system.as_ref()?)))
-        .collect();
+    let ready: Vec<(&Plan, &System)> =
+        ready.filter_map(|(plan, system)| Some((*plan, &**system.as_ref()?))).collect();
     let Some((first, system)) = ready.first() else {
         return vec![None; plans.len()];
     };
@@ -395,10 +368,7 @@ fn conditioning(seen: &Passages, passage: &Passage, step_s: f64) -> Conditioning
             interpolation: of(|it| it.interpolation_s),
         }
     };
-    let incident = over(
-        shape(seen.sensor(), &passage.incident),
-        passage.tof_incident_s(),
-    );
+    let incident = over(shape(seen.sensor(), &passage.incident), passage.tof_incident_s());
     let reflected = passage.reflected.map(|peak| {
         let time_s = peak.time_s - passage.wall.time_s;
         over(shape(seen.sensor(), &peak), time_s)

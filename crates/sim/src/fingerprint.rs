@@ -23,9 +23,8 @@ impl Fingerprint {
     pub fn from_hex(text: &str) -> Option<Self> {
         let digits: Option<Vec<u32>> = text.chars().map(|c| c.to_digit(16)).collect();
         let pairs = digits.as_ref()?.chunks(2);
-        let bytes: Vec<u8> = pairs
-            .map(|pair| (16 * pair[0] + pair.get(1).unwrap_or(&0)) as u8)
-            .collect();
+        let bytes: Vec<u8> =
+            pairs.map(|pair| (16 * pair[0] + pair.get(1).unwrap_or(&0)) as u8).collect();
         let whole = text.len() == 64;
         bytes.try_into().ok().filter(|_| whole).map(Self)
     }
@@ -73,10 +72,8 @@ impl Inputs {
     /// With numbers, bit for bit.
     #[must_use]
     pub fn numbers(self, name: &str, values: &[f64]) -> Self {
-        let bytes: Vec<u8> = values
-            .iter()
-            .flat_map(|value| value.to_bits().to_le_bytes())
-            .collect();
+        let bytes: Vec<u8> =
+            values.iter().flat_map(|value| value.to_bits().to_le_bytes()).collect();
         self.bytes(name, &bytes)
     }
 

@@ -45,12 +45,9 @@ impl Expected {
         let duration_s = plan.duration_s.unwrap_or(WAYS * crossing_s);
         let bodies = system.bodies() as f64;
         let steps = match plan.solver {
-            Solver::Rk4 {
-                step_s: Some(step_s),
+            Solver::Rk4 { step_s: Some(step_s) } | Solver::Verlet { step_s: Some(step_s) } => {
+                duration_s / step_s
             }
-            | Solver::Verlet {
-                step_s: Some(step_s),
-            } => duration_s / step_s,
             _ => {
                 let steps = STEPS_A_BEAD * bodies * (plan.accuracy / 1e-6).powf(-0.2);
                 steps * duration_s / (WAYS * crossing_s)

@@ -24,19 +24,12 @@ const SHORTEST: f64 = 1e-3;
 /// time of the shortest contact, during which an error may rise to its whole size.
 pub(crate) fn other_picks(seen: &Passages, passage: &Passage, least_s: f64) -> Vec<OtherPick> {
     let largest = passage.incident.value.max(passage.wall.value);
-    let pick = |(height, time_error): (f64, f64)| OtherPick {
-        height_error: height / largest,
-        time_error,
-    };
-    let as_high = passage
-        .competing
-        .iter()
-        .map(|other| as_high(other, passage));
+    let pick =
+        |(height, time_error): (f64, f64)| OtherPick { height_error: height / largest, time_error };
+    let as_high = passage.competing.iter().map(|other| as_high(other, passage));
     let after = after_wall(seen, passage);
     let flattest = flattest(&after, passage, least_s);
-    let slight = passage
-        .reflected
-        .map(|peak| (prominence(&after, peak), 1.0));
+    let slight = passage.reflected.map(|peak| (prominence(&after, peak), 1.0));
     as_high.chain(flattest).chain(slight).map(pick).collect()
 }
 
@@ -88,9 +81,8 @@ fn prominence(after: &[&Stretch], peak: Maximum) -> f64 {
     let lowest = |side: &[&Stretch]| {
         let values = side.iter().flat_map(|it| it.values);
         // What is not kept is far below any peak.
-        let gaps = side
-            .windows(2)
-            .any(|pair| pair[1].start_s > pair[0].end_s() + 0.01 * pair[0].length_s);
+        let gaps =
+            side.windows(2).any(|pair| pair[1].start_s > pair[0].end_s() + 0.01 * pair[0].length_s);
         values.fold(if gaps { 0.0 } else { peak.value }, f64::min)
     };
     let at = after.partition_point(|it| it.start_s < peak.time_s);

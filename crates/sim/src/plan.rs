@@ -62,12 +62,8 @@ pub enum Pick {
 
 impl Pick {
     /// Every way that an experiment file can ask for.
-    pub const ALL: [Self; 4] = [
-        Self::Peak,
-        Self::Flank(0.1),
-        Self::Flank(0.5),
-        Self::CrossCorrelation,
-    ];
+    pub const ALL: [Self; 4] =
+        [Self::Peak, Self::Flank(0.1), Self::Flank(0.5), Self::CrossCorrelation];
 }
 
 impl From<experiment::Pick> for Pick {
@@ -252,10 +248,7 @@ impl Plan {
     /// numbers is refused while the shot runs, since only then its end is known.
     #[must_use]
     pub fn watching(mut self, sensors: Vec<Sensor>, interval_s: Option<f64>) -> Self {
-        self.watch = Some(Watch {
-            sensors,
-            interval_s,
-        });
+        self.watch = Some(Watch { sensors, interval_s });
         self
     }
 

@@ -32,10 +32,7 @@ const OF_HEIGHTS: f64 = 30.0;
 /// maximum, what that changes.
 fn standing(shot: &Shot, reached: f64, heights: f64) -> f64 {
     let heights = heights.max(OF_HEIGHTS * shot.tolerance.unwrap_or(0.0));
-    let possible = shot
-        .other_picks
-        .iter()
-        .filter(|pick| pick.height_error <= heights);
+    let possible = shot.other_picks.iter().filter(|pick| pick.height_error <= heights);
     possible.fold(reached, |reached, pick| reached.max(pick.time_error))
 }
 
@@ -139,11 +136,8 @@ impl<'a> PreparedShot<'a> {
             let tighter = self.tightened(tolerance, self.plan.watch.is_some())?;
             let changes = [(10.0, tighter.change(shot))];
             let heights = tighter.height_change(shot);
-            reached = standing(
-                &tighter,
-                accuracy::estimated(&changes, of_plan, tolerance),
-                heights,
-            );
+            reached =
+                standing(&tighter, accuracy::estimated(&changes, of_plan, tolerance), heights);
             let notes = std::mem::take(&mut shot.notes);
             *shot = Shot { notes, ..tighter };
         }
@@ -177,11 +171,7 @@ impl<'a> PreparedShot<'a> {
             });
             (looseness, change)
         });
-        standing(
-            shot,
-            accuracy::estimated(&changes, of_plan, tolerance),
-            heights,
-        )
+        standing(shot, accuracy::estimated(&changes, of_plan, tolerance), heights)
     }
 
     /// A run at a tolerance other than the plan's own.
@@ -226,9 +216,7 @@ impl<'a> PreparedShot<'a> {
         loop {
             let change = |other: &Option<Shot>| other.as_ref().map_or(0.0, |it| shot.change(it));
             let reached = accuracy::reached([change(&near), change(&far)], of_plan, tolerance);
-            let heights = near
-                .as_ref()
-                .map_or(0.0, |near| 2.0 * shot.height_change(near));
+            let heights = near.as_ref().map_or(0.0, |near| 2.0 * shot.height_change(near));
             let reached = standing(shot, reached, heights);
             let Some(next) =
                 near.filter(|_| reached > self.plan.accuracy && 0.1 * tolerance >= TIGHTEST)
@@ -450,9 +438,7 @@ impl<'a> PreparedShot<'a> {
         let passages = tracker.passages();
         let passage = match duration::has_wall(&self.plan.chain.far) {
             true => passages.passage(),
-            false => Err(PassageError::NoWallPulse {
-                duration_s: outcome.time_s,
-            }),
+            false => Err(PassageError::NoWallPulse { duration_s: outcome.time_s }),
         };
         let seen = passage.as_ref().ok();
         let least_s = self.system.scales().time_s;
@@ -491,8 +477,8 @@ pub(crate) fn closed_gaps(plan: &Plan, system: &System) -> Option<String> {
     let loaded = |contact| system.static_contact(contact).overlap_m >= 0.0;
     match gaps.filter(|gap| loaded(gap.contact)).count() {
         0 => None,
-        count => Some(format!(
-            "{count} of the initial gaps carry a load and are closed before the shot"
-        )),
+        count => {
+            Some(format!("{count} of the initial gaps carry a load and are closed before the shot"))
+        }
     }
 }

@@ -87,15 +87,9 @@ pub struct Rows {
 impl Rows {
     /// Adds a shot.
     pub fn add(&mut self, shot: &BatchShot) {
-        let BatchShot {
-            place, speed_m_s, ..
-        } = *shot;
+        let BatchShot { place, speed_m_s, .. } = *shot;
         if !shot.warnings.is_empty() {
-            let first = || WarningSummary {
-                place,
-                lines: shot.warnings.clone(),
-                shots: 0,
-            };
+            let first = || WarningSummary { place, lines: shot.warnings.clone(), shots: 0 };
             self.warnings.get_or_insert_with(first).shots += 1;
         }
         let cells = match &shot.shot {
@@ -168,24 +162,16 @@ impl Rows {
     /// those reached, where known, else the one asked.
     pub fn law(&self, of: Column, asked: f64) -> Law {
         let times = self.column(of).iter();
-        let rows = times
-            .zip(self.column(Column::Speed))
-            .zip(self.column(Column::Accuracy));
+        let rows = times.zip(self.column(Column::Speed)).zip(self.column(Column::Accuracy));
         let seen = rows.filter(|((time_s, _), _)| !time_s.is_nan());
         let mut seen_at: [Vec<f64>; 3] = Default::default();
         for ((time_s, speed_m_s), reached) in seen {
             let accuracy = if reached.is_nan() { asked } else { *reached };
             let row = [*speed_m_s, *time_s, accuracy];
-            seen_at
-                .iter_mut()
-                .zip(row)
-                .for_each(|(column, cell)| column.push(cell));
+            seen_at.iter_mut().zip(row).for_each(|(column, cell)| column.push(cell));
         }
         let [speeds, times, accuracies] = seen_at;
-        (
-            power_law(&speeds, &times, None),
-            uncertainty(&speeds, &accuracies),
-        )
+        (power_law(&speeds, &times, None), uncertainty(&speeds, &accuracies))
     }
 }
 

@@ -141,22 +141,14 @@ impl Batch {
         let same = |found: &BatchResult| found.batch == self.fingerprint() && found.shard == shard;
         // What is not whole is written anew.
         if let Some(result) = BatchResult::read(&path).ok().filter(same) {
-            return Ok(StoredShard {
-                path,
-                stored: true,
-                result,
-            });
+            return Ok(StoredShard { path, stored: true, result });
         }
         let result = self.run(shard, progress);
         if stopped() {
             let why = "the shard was broken off";
             return Err(StudyError::Shards(why.to_owned()));
         }
-        Ok(StoredShard {
-            path: result.write(folder)?,
-            stored: false,
-            result,
-        })
+        Ok(StoredShard { path: result.write(folder)?, stored: false, result })
     }
 }
 
@@ -224,11 +216,8 @@ impl Header {
         }
         let batch = Fingerprint::from_hex(&self.run).ok_or("its run has no fingerprint")?;
         let shard = Shard::new(self.shard, self.of).map_err(|_| "there is no such shard")?;
-        let mut rows = Rows {
-            failed: self.failed.clone(),
-            warnings: self.odd.clone(),
-            ..Rows::default()
-        };
+        let mut rows =
+            Rows { failed: self.failed.clone(), warnings: self.odd.clone(), ..Rows::default() };
         for (name, values) in table.columns {
             if let Some(at) = COLUMNS.iter().position(|column| *column == name) {
                 rows.columns[at] = values;
@@ -275,9 +264,7 @@ impl BatchResult {
         let columns = COLUMNS.iter().zip(&self.rows.columns);
         let table = ColumnFile {
             about: header.text(),
-            columns: columns
-                .map(|(name, values)| ((*name).to_owned(), values.clone()))
-                .collect(),
+            columns: columns.map(|(name, values)| ((*name).to_owned(), values.clone())).collect(),
         };
         let unwritable =
             |error: hertzchain_measure::MeasureError| StudyError::Unwritable(error.to_string());
@@ -338,9 +325,7 @@ impl BatchResult {
             };
         }
         one_batch(&cuts)?;
-        let fewest = cuts
-            .into_iter()
-            .min_by_key(|((_, of), found)| of - found.len());
+        let fewest = cuts.into_iter().min_by_key(|((_, of), found)| of - found.len());
         fewest
             .ok_or_else(|| nothing(folders, &damaged))
             .and_then(|((_, of), found)| whole(of, found, &damaged))
@@ -407,19 +392,13 @@ fn one_batch(cuts: &BTreeMap<(Fingerprint, usize), Found>) -> Result<(), StudyEr
 }
 
 fn whole(of: usize, found: Found, damaged: &[String]) -> Result<BatchResult, StudyError> {
-    let missing: Vec<usize> = (1..=of)
-        .filter(|number| !found.contains_key(number))
-        .collect();
+    let missing: Vec<usize> = (1..=of).filter(|number| !found.contains_key(number)).collect();
     let parts: Vec<BatchResult> = found.into_values().map(|(_, part)| part).collect();
     let about = parts.first().map(|part| part.about.clone());
     match (parts.first(), missing.first()) {
         (Some(first), None) => {
             let rows: Vec<Rows> = parts.iter().map(|part| part.rows.clone()).collect();
-            Ok(BatchResult {
-                shard: Shard::WHOLE,
-                rows: Rows::dealt(&rows),
-                ..first.clone()
-            })
+            Ok(BatchResult { shard: Shard::WHOLE, rows: Rows::dealt(&rows), ..first.clone() })
         }
         (_, first) => Err(StudyError::Shards(format!(
             "{} of {of} shards are missing of {}: {}; run the same command with --shard {}/{of}{}{}",
@@ -429,17 +408,11 @@ fn whole(of: usize, found: Found, damaged: &[String]) -> Result<BatchResult, Stu
             first.unwrap_or(&1),
             match missing.len() {
                 0 | 1 => String::new(),
-                _ => format!(
-                    " and so on, or in a Slurm array --array={}",
-                    ranges(&missing)
-                ),
+                _ => format!(" and so on, or in a Slurm array --array={}", ranges(&missing)),
             },
             match damaged {
                 [] => String::new(),
-                _ => format!(
-                    "\nnot counted, as they are not whole:\n  {}\n",
-                    damaged.join("\n  ")
-                ),
+                _ => format!("\nnot counted, as they are not whole:\n  {}\n", damaged.join("\n  ")),
             }
         ))),
     }

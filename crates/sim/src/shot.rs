@@ -194,11 +194,7 @@ impl Shot {
     /// The peaks of both computations, pulse by pulse; `None` where one has none.
     fn peak_pairs(&self, other: &Self) -> Option<[[Maximum; 2]; 3]> {
         let (one, two) = (self.passage.as_ref().ok()?, other.passage.as_ref().ok()?);
-        Some([
-            [one.incident, two.incident],
-            [one.wall, two.wall],
-            [one.reflected?, two.reflected?],
-        ])
+        Some([[one.incident, two.incident], [one.wall, two.wall], [one.reflected?, two.reflected?]])
     }
 
     /// Whether two computations have all peaks within some steps of this one.
@@ -230,16 +226,12 @@ impl Shot {
 }
 
 fn highest(maxima: &[Maximum]) -> Option<&Maximum> {
-    maxima
-        .iter()
-        .reduce(|best, peak| if peak.value > best.value { peak } else { best })
+    maxima.iter().reduce(|best, peak| if peak.value > best.value { peak } else { best })
 }
 
 /// Largest difference of velocities over the largest velocity.
 fn velocity_change(one: &[f64], two: &[f64]) -> f64 {
-    let most = two
-        .iter()
-        .fold(f64::MIN_POSITIVE, |most, v| most.max(v.abs()));
+    let most = two.iter().fold(f64::MIN_POSITIVE, |most, v| most.max(v.abs()));
     let pairs = one.iter().zip(two);
     pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs())) / most
 }
@@ -331,10 +323,7 @@ impl Flight {
             Pick::Flank(fraction) => {
                 let [sensor, wall, back] = seen.flanks(passage, fraction);
                 let wall = wall?;
-                Some(Self {
-                    incident_s: wall - sensor?,
-                    reflected_s: back.map(|back| back - wall),
-                })
+                Some(Self { incident_s: wall - sensor?, reflected_s: back.map(|back| back - wall) })
             }
             Pick::CrossCorrelation => correlated(seen, passage),
         }
@@ -354,11 +343,7 @@ impl Flight {
 }
 
 fn relative(one: f64, two: f64) -> f64 {
-    if one == two {
-        0.0
-    } else {
-        ((one - two) / two).abs()
-    }
+    if one == two { 0.0 } else { ((one - two) / two).abs() }
 }
 
 fn correlated(seen: &Passages, passage: &Passage) -> Option<Flight> {
@@ -370,10 +355,7 @@ fn correlated(seen: &Passages, passage: &Passage) -> Option<Flight> {
         let back = sampled(seen.sensor(), peak.time_s, width);
         Some(peak.time_s - passage.wall.time_s + lag(&wall, &back)?)
     });
-    Some(Flight {
-        incident_s: passage.tof_incident_s() + lag(&incident, &wall)?,
-        reflected_s,
-    })
+    Some(Flight { incident_s: passage.tof_incident_s() + lag(&incident, &wall)?, reflected_s })
 }
 
 /// A signal around a time, which is the middle sample.

@@ -45,19 +45,16 @@ fn parse_plain_or(
 ) -> Result<f64, StudyError> {
     let text = text.trim();
     let quantity = parse_quantity(text).or_else(|error| {
-        refused(format!(
-            "`{text}`: {error}; expected {expected}, such as {example}"
-        ))
+        refused(format!("`{text}`: {error}; expected {expected}, such as {example}"))
     })?;
     let fits = |unit: &str| {
         parse_unit(unit).is_ok_and(|unit| quantity.dimension.agrees_with(&unit.dimension))
     };
     match fits("1") || fits(unit) {
         true => Ok(quantity.value),
-        false => refused(format!(
-            "`{text}` is {}, not {quantity_expected}",
-            quantity.dimension.name()
-        )),
+        false => {
+            refused(format!("`{text}` is {}, not {quantity_expected}", quantity.dimension.name()))
+        }
     }
 }
 
@@ -89,11 +86,7 @@ fn range(text: &str) -> Result<Vec<f64>, StudyError> {
         ));
     };
     let (from, to) = (parse_speed(from)?, parse_speed(to)?);
-    let points = count
-        .trim()
-        .parse()
-        .ok()
-        .filter(|n| (2..=MOST_SPEEDS).contains(n));
+    let points = count.trim().parse().ok().filter(|n| (2..=MOST_SPEEDS).contains(n));
     let Some(count) = points else {
         return refused(format!(
             "a range has from 2 to {MOST_SPEEDS} speeds, not {}",

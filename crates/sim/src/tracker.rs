@@ -106,10 +106,7 @@ impl Tracker {
         };
         let leaves = self.bead_over_striker * piece.leaving_energy_j(theta) > left_j;
         let contacts = [self.sensor_bead - 1, self.sensor_bead];
-        let most_n: f64 = contacts
-            .map(|contact| piece.most_force_n(contact, left_j))
-            .iter()
-            .sum();
+        let most_n: f64 = contacts.map(|contact| piece.most_force_n(contact, left_j)).iter().sum();
         leaves && 0.5 * most_n < reflected.value
     }
 }

@@ -26,10 +26,7 @@ fn no_time_of_flight_is_more_wrong_than_the_accuracy_reached() {
             let shot = shoot_checked(&plan.clone().with_accuracy(accuracy)).unwrap();
             let off = shot.flight.unwrap().change(&tight.flight.unwrap());
             let reached = shot.accuracy_reached.unwrap();
-            assert!(
-                off <= reached,
-                "{case} at {speed}: {off:e} over {reached:e}"
-            );
+            assert!(off <= reached, "{case} at {speed}: {off:e} over {reached:e}");
             assert!(reached <= accuracy, "{case} at {speed}: {reached:e}");
         }
     }

@@ -13,11 +13,4 @@ mod shot;
 mod sweep;
 
 /// The paper's chains.
-const CASES: [&str; 6] = [
-    "hertz",
-    "hertz-viscoelastic",
-    "dry",
-    "pump",
-    "gear",
-    "motor",
-];
+const CASES: [&str; 6] = ["hertz", "hertz-viscoelastic", "dry", "pump", "gear", "motor"];

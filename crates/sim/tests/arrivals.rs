@@ -23,12 +23,8 @@ fn row(beads: usize, striker_kg: f64) -> Plan {
 
 fn swept(plan: &Plan) -> Shot {
     let plans = [plan.clone().for_flights()];
-    let mut shots = run_plans(
-        &plans,
-        Control::PerShot { checked: false },
-        InstructionSet::default(),
-        &|| {},
-    );
+    let mut shots =
+        run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
     shots.remove(0).unwrap()
 }
 
@@ -42,11 +38,7 @@ fn in_every_way(plan: &Plan) -> Vec<Shot> {
     let searched_s = shots[1].passage.as_ref().unwrap().search_ends_s;
     shots.extend([1.001, 1.7, 6.0].map(|times| {
         let duration_s = Some(times * searched_s);
-        shoot(&Plan {
-            duration_s,
-            ..at(1e-5)
-        })
-        .unwrap()
+        shoot(&Plan { duration_s, ..at(1e-5) }).unwrap()
     }));
     shots
 }
@@ -62,13 +54,7 @@ fn a_heavy_strikers_shot_has_one_arrival_that_is_called_ambiguous() {
             assert!(change < 2e-3, "{striker_kg}: {change:e} {:?}", shot.solver);
             let passage = shot.passage.as_ref().unwrap();
             let at_wall = |other: &&_| {
-                matches!(
-                    other,
-                    &&hertzchain_chain::observe::Competing {
-                        pulse: Pulse::Wall,
-                        ..
-                    }
-                )
+                matches!(other, &&hertzchain_chain::observe::Competing { pulse: Pulse::Wall, .. })
             };
             assert!(passage.competing.iter().filter(at_wall).count() > 0);
             let highest = passage.wall_maxima.iter().map(|peak| peak.value);
@@ -104,10 +90,7 @@ fn a_return_that_was_not_waited_for_is_not_called_absent() {
     let duration_s = Some(1.2 * whole.passage.unwrap().wall.time_s);
     let cut = shoot(&Plan { duration_s, ..row }).unwrap();
     assert_eq!(cut.flight.unwrap().reflected_s, None);
-    let reported = cut
-        .notes
-        .iter()
-        .any(|note| note.contains("`duration` goes on"));
+    let reported = cut.notes.iter().any(|note| note.contains("`duration` goes on"));
     assert!(reported, "{:?}", cut.notes);
 }
 
@@ -155,10 +138,7 @@ fn an_infinite_slope_at_touch_leaves_no_maximum() {
         let shot = shoot(&plan(NO_INCIDENT).with_accuracy(accuracy)).unwrap();
         let missing = matches!(shot.passage, Err(PassageError::NoIncidentPulse { .. }));
         assert!(missing, "{accuracy:e}: {:?}", shot.passage);
-        assert!(
-            shot.wall().is_some_and(|wall| wall.value > 0.0),
-            "the wall's peak alone"
-        );
+        assert!(shot.wall().is_some_and(|wall| wall.value > 0.0), "the wall's peak alone");
     }
 }
 
@@ -174,10 +154,7 @@ fn an_elastic_pair_separates_at_any_speed() {
         let (_, velocity) = shot.rebound.unwrap().first.unwrap();
         // Elastic collision, to the accuracy of 1e-6.
         let expected = speed * (1.7 - 1.0) / (1.7 + 1.0);
-        assert!(
-            (velocity / expected - 1.0).abs() < 1e-5,
-            "{speed}: {velocity}"
-        );
+        assert!((velocity / expected - 1.0).abs() < 1e-5, "{speed}: {velocity}");
     }
 }
 
@@ -185,10 +162,7 @@ fn an_elastic_pair_separates_at_any_speed() {
 fn a_trace_has_its_last_sample() {
     for samples in [7_u32, 10, 30, 100, 333] {
         let interval_s = 0.1;
-        let row = Plan {
-            duration_s: Some(f64::from(samples) * interval_s),
-            ..row(8, 1.0)
-        };
+        let row = Plan { duration_s: Some(f64::from(samples) * interval_s), ..row(8, 1.0) };
         let trace = shoot(&row.watching(vec![Sensor::Bead(7)], Some(interval_s)));
         let times = trace.unwrap().trace.unwrap().time_s;
         assert_eq!(times.len() as u32, samples + 1);
@@ -227,12 +201,7 @@ fn a_rebound_on_an_incline_belongs_to_its_time() {
     let shot = shoot(&plan(&text).watching(watched, Some(interval_s))).unwrap();
     let (trace, rebound) = (shot.trace.unwrap(), shot.rebound.unwrap());
     let end_s = rebound.end_s.unwrap();
-    let before = trace
-        .time_s
-        .iter()
-        .take_while(|time| **time <= end_s)
-        .count()
-        - 1;
+    let before = trace.time_s.iter().take_while(|time| **time <= end_s).count() - 1;
     // Weight alone acts between the sample and the reported time.
     let since_s = end_s - trace.time_s[before];
     let expected = trace.columns[0][before] + 9.80665 * 20_f64.to_radians().sin() * since_s;
@@ -252,9 +221,8 @@ fn light_stop() -> Plan {
             "radius = \"2.0266560401035498 mm\"\nmass = \"0.11023159765817877 g\"\nmaterial = \"b\""
         }
     };
-    let beads: String = (0..60)
-        .map(|i| format!("[[beads]]\ncount = 1\n{}\n", bead(i % 2 == 0)))
-        .collect();
+    let beads: String =
+        (0..60).map(|i| format!("[[beads]]\ncount = 1\n{}\n", bead(i % 2 == 0))).collect();
     plan(&format!(
         "[materials.a]\nyoung_modulus = \"16112853.397792958 Pa\"\npoisson_ratio = 0.05741919740751395\n\
          shear_viscosity = \"1.8625106312219641 Pa s\"\n\
@@ -278,13 +246,8 @@ fn a_maximum_that_hardly_rises_is_found_or_called_uncertain_at_any_accuracy() {
     for accuracy in [1e-3, 1e-5] {
         let at = |plan: &Plan| [plan.clone().with_accuracy(accuracy)];
         let estimated = shoot_estimated(&at(&plan)[0].clone().with_budget());
-        let fit = run_plans(
-            &at(&flights),
-            Control::None,
-            InstructionSet::default(),
-            &|| {},
-        )
-        .remove(0);
+        let fit =
+            run_plans(&at(&flights), Control::None, InstructionSet::default(), &|| {}).remove(0);
         for shot in [estimated, Ok(swept(&at(&flights)[0])), fit] {
             let shot = shot.unwrap();
             let back_s = shot.flight.unwrap().reflected_s.unwrap();
@@ -325,17 +288,11 @@ fn a_batch_reports_no_return_as_absent_that_the_wave_loop_sees() {
 #[test]
 fn a_fixed_step_is_estimated_too() {
     let plan = row(20, 1.0);
-    let right = shoot(&plan.clone().with_accuracy(1e-9))
-        .unwrap()
-        .flight
-        .unwrap();
+    let right = shoot(&plan.clone().with_accuracy(1e-9)).unwrap().flight.unwrap();
     for step_s in [0.02, 0.1] {
         let step_s = Some(step_s);
         for solver in [Solver::Rk4 { step_s }, Solver::Verlet { step_s }] {
-            let plan = Plan {
-                solver,
-                ..plan.clone()
-            };
+            let plan = Plan { solver, ..plan.clone() };
             let shot = shoot_estimated(&plan).unwrap();
             let off = shot.flight.unwrap().change(&right);
             let reached = shot.accuracy_reached.unwrap();

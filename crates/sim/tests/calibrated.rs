@@ -4,21 +4,12 @@ use hertzchain_experiment::{Experiment, preset};
 use hertzchain_sim::{Batch, BatchOptions, BatchResult, Column, ErrorControl, Shard, parse_speeds};
 
 fn batch(experiment: &Experiment, speeds: &str, accuracy: f64, control: ErrorControl) -> Batch {
-    let options = BatchOptions {
-        accuracy,
-        error_control: control,
-        ..BatchOptions::of(experiment)
-    };
+    let options = BatchOptions { accuracy, error_control: control, ..BatchOptions::of(experiment) };
     Batch::new(experiment, parse_speeds(speeds).unwrap(), options).unwrap()
 }
 
 fn run(name: &str, speeds: &str, accuracy: f64) -> BatchResult {
-    let batch = batch(
-        &preset(name).unwrap(),
-        speeds,
-        accuracy,
-        ErrorControl::default(),
-    );
+    let batch = batch(&preset(name).unwrap(), speeds, accuracy, ErrorControl::default());
     batch.run(Shard::WHOLE, &|| {})
 }
 
@@ -27,16 +18,10 @@ fn run(name: &str, speeds: &str, accuracy: f64) -> BatchResult {
 fn errors(of: &BatchResult, exact: &BatchResult) -> Vec<f64> {
     let change = |column| {
         let times = of.rows.column(column).iter().zip(exact.rows.column(column));
-        times
-            .map(|(one, two)| (one / two - 1.0).abs())
-            .collect::<Vec<f64>>()
+        times.map(|(one, two)| (one / two - 1.0).abs()).collect::<Vec<f64>>()
     };
     let (incident, reflected) = (change(Column::Incident), change(Column::Reflected));
-    incident
-        .into_iter()
-        .zip(reflected)
-        .map(|(a, b)| a.max(b))
-        .collect()
+    incident.into_iter().zip(reflected).map(|(a, b)| a.max(b)).collect()
 }
 
 #[test]
@@ -53,10 +38,7 @@ fn errors_are_below_the_estimates_and_those_below_the_accuracy_asked() {
             let reached = found.rows.column(Column::Accuracy);
             for (error, reached) in errors(&found, &exact).into_iter().zip(reached) {
                 // What they are compared with is itself right to 1e-6.
-                assert!(
-                    error <= reached + 1e-6,
-                    "{name} at {accuracy:e}: {error:e}, {reached:e}"
-                );
+                assert!(error <= reached + 1e-6, "{name} at {accuracy:e}: {error:e}, {reached:e}");
                 assert!(*reached <= accuracy, "{name}: {reached:e} at {accuracy:e}");
             }
         }
@@ -80,9 +62,7 @@ fn more_accuracy_takes_more_force_passes() {
     let passes = |accuracy| {
         let batch = batch(&dry, "log:0.1:1:200", accuracy, ErrorControl::default());
         let mut passes = 0;
-        batch.run_each(Shard::WHOLE, &|| {}, |it| {
-            passes += it.shot.unwrap().work.force_passes
-        });
+        batch.run_each(Shard::WHOLE, &|| {}, |it| passes += it.shot.unwrap().work.force_passes);
         passes
     };
     let [coarse, fine] = [1e-3, 1e-6].map(passes);
@@ -97,15 +77,9 @@ fn results_have_the_same_bits_on_any_number_of_threads_and_alone() {
     let whole = batch.run(Shard::WHOLE, &|| {});
     for threads in [1, 2, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let again = pool
-            .build()
-            .unwrap()
-            .install(|| batch.run(Shard::WHOLE, &|| {}));
+        let again = pool.build().unwrap().install(|| batch.run(Shard::WHOLE, &|| {}));
         assert_eq!(again.error_control, whole.error_control);
-        assert!(
-            (0..170).all(|at| cell(&again, at) == cell(&whole, at)),
-            "{threads} threads"
-        );
+        assert!((0..170).all(|at| cell(&again, at) == cell(&whole, at)), "{threads} threads");
     }
     // A shard of one shot.
     let alone = batch.run(Shard::new(12, 170).unwrap(), &|| {});
@@ -123,17 +97,9 @@ fn what_is_not_calibrated_says_why() {
     assert_eq!(few, "per shot: so few shots are computed sooner so");
     let asked = why(&dry, "0.3,0.5", ErrorControl::PerShot);
     assert_eq!(asked, "per shot: as asked");
-    let dimer = why(
-        &preset("dimer-steel-ptfe").unwrap(),
-        "0.3:0.5:160",
-        ErrorControl::Calibrated,
-    );
+    let dimer = why(&preset("dimer-steel-ptfe").unwrap(), "0.3:0.5:160", ErrorControl::Calibrated);
     assert!(dimer.contains("uniform rows"), "{dimer}");
-    let pump = why(
-        &preset("pump").unwrap(),
-        "0.1:0.5:160",
-        ErrorControl::Calibrated,
-    );
+    let pump = why(&preset("pump").unwrap(), "0.1:0.5:160", ErrorControl::Calibrated);
     assert!(pump.contains("several maxima compete"), "{pump}");
 }
 
@@ -143,20 +109,10 @@ fn numbers_that_differ_from_shot_to_shot_are_calibrated_together() {
     let values: Vec<f64> = (0..200).map(|i| 40.0 + 0.4 * f64::from(i)).collect();
     let found = |accuracy| {
         let batch = batch(&dry, "log:0.1:1:200", accuracy, ErrorControl::default());
-        let batch = batch
-            .with_number("damping_cubic.coefficient", values.clone())
-            .unwrap();
+        let batch = batch.with_number("damping_cubic.coefficient", values.clone()).unwrap();
         batch.run(Shard::WHOLE, &|| {})
     };
     let (found, exact) = (found(1e-4), found(1e-6));
-    assert!(
-        found.error_control.contains("calibration shots"),
-        "{}",
-        found.error_control
-    );
-    assert!(
-        errors(&found, &exact)
-            .into_iter()
-            .all(|error| error <= 1e-4)
-    );
+    assert!(found.error_control.contains("calibration shots"), "{}", found.error_control);
+    assert!(errors(&found, &exact).into_iter().all(|error| error <= 1e-4));
 }

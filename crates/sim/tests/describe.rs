@@ -1,9 +1,5 @@
 //! What is understood of an experiment, against numbers computed by hand.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use hertzchain_experiment::{Experiment, examples, preset, presets};
 use hertzchain_sim::{Group, Plan, Value, describe, describe_theory, shoot};
@@ -15,14 +11,8 @@ fn described(experiment: &Experiment) -> Vec<Group> {
 
 /// The number of the first row whose name begins so, in a group whose title does.
 fn number(groups: &[Group], title: &str, name: &str) -> f64 {
-    let group = groups
-        .iter()
-        .find(|group| group.title.starts_with(title))
-        .unwrap();
-    let row = group
-        .rows
-        .iter()
-        .find(|row| row.name.trim().starts_with(name));
+    let group = groups.iter().find(|group| group.title.starts_with(title)).unwrap();
+    let row = group.rows.iter().find(|row| row.name.trim().starts_with(name));
     match row.map(|row| &row.value) {
         Some(Value::Number(number)) => *number,
         other => panic!("{title}, {name}: {other:?}"),
@@ -30,31 +20,16 @@ fn number(groups: &[Group], title: &str, name: &str) -> f64 {
 }
 
 fn assert_close(found: f64, expected: f64, allowed: f64) {
-    assert!(
-        (found / expected - 1.0).abs() < allowed,
-        "{found} for {expected}"
-    );
+    assert!((found / expected - 1.0).abs() < allowed, "{found} for {expected}");
 }
 
 #[test]
 fn the_paper_s_balls_have_the_paper_s_constants() {
     let groups = described(&preset("dry").unwrap());
     // Eleven digits are published.
-    assert_close(
-        number(&groups, "Contacts 0 to 40", "stiffness"),
-        8.7926303796e9,
-        1e-10,
-    );
-    assert_close(
-        number(&groups, "Contacts 0 to 40", "relaxation_time"),
-        3.3852895149e-7,
-        1e-10,
-    );
-    assert_close(
-        number(&groups, "Contacts 0 to 40", "coefficient"),
-        77.0,
-        1e-15,
-    );
+    assert_close(number(&groups, "Contacts 0 to 40", "stiffness"), 8.7926303796e9, 1e-10);
+    assert_close(number(&groups, "Contacts 0 to 40", "relaxation_time"), 3.3852895149e-7, 1e-10);
+    assert_close(number(&groups, "Contacts 0 to 40", "coefficient"), 77.0, 1e-15);
 }
 
 #[test]
@@ -66,25 +41,13 @@ fn a_loaded_chain_has_its_overlap_sound_speed_and_cutoff() {
     let force = number(&groups, "At rest", "static force of contact 1");
     let overlap = (force / stiffness).powf(2.0 / 3.0);
     // Rounding of a few powers.
-    assert_close(
-        number(&groups, "At rest", "static overlap of contact 1"),
-        overlap,
-        1e-13,
-    );
+    assert_close(number(&groups, "At rest", "static overlap of contact 1"), overlap, 1e-13);
     let sound = (1.5 * stiffness * overlap.sqrt() / chain.beads[0].mass_kg).sqrt();
     // The stiffness under load is a central difference, right to 1e-10.
     let small = "Small waves under the static load";
-    assert_close(
-        number(&groups, small, "sound speed at contact 1"),
-        sound,
-        1e-9,
-    );
+    assert_close(number(&groups, small, "sound speed at contact 1"), sound, 1e-9);
     let cutoff = sound / std::f64::consts::PI;
-    assert_close(
-        number(&groups, small, "cutoff frequency at contact 1"),
-        cutoff,
-        1e-9,
-    );
+    assert_close(number(&groups, small, "cutoff frequency at contact 1"), cutoff, 1e-9);
 }
 
 #[test]
@@ -150,11 +113,7 @@ fn every_preset_and_example_can_be_described_without_nonsense() {
         let experiment = preset(file.name).unwrap();
         let (chain, _) = experiment.chain(None).unwrap();
         let theory = describe_theory(&experiment, &chain).unwrap();
-        for row in described(&experiment)
-            .iter()
-            .chain(&theory)
-            .flat_map(|group| &group.rows)
-        {
+        for row in described(&experiment).iter().chain(&theory).flat_map(|group| &group.rows) {
             assert!(finite(&row.value), "{}: {row:?}", file.name);
         }
     }
@@ -191,16 +150,10 @@ fn theory_prints_the_wave_of_an_unloaded_row_of_equal_beads_for_such_rows_only()
     for (name, instead) in [
         ("precompressed", "Solitary wave on the static load"),
         ("vertical-on-specimen", "Solitary wave on the static load"),
-        (
-            "dimer-steel-ptfe",
-            "Solitary wave of a long, unloaded row of two kinds",
-        ),
+        ("dimer-steel-ptfe", "Solitary wave of a long, unloaded row of two kinds"),
         ("tapered", "Solitary waves"),
     ] {
-        assert!(
-            !has(name, exact) && !has(name, "Long-wave theory"),
-            "{name}"
-        );
+        assert!(!has(name, exact) && !has(name, "Long-wave theory"), "{name}");
         assert!(has(name, instead), "{name}");
     }
 }
@@ -217,13 +170,8 @@ fn small_waves_on_a_load_run_at_the_speed_of_sound_and_large_ones_faster() {
     let groups = theory("precompressed");
     let title = "Solitary wave on the static load";
     let sound = number(&groups, "Small waves under", "sound speed at contact 1");
-    let speeds = [0.1, 1.0, 10.0].map(|excess| {
-        number(
-            &groups,
-            title,
-            &format!("speed, dynamic peak force {excess} times"),
-        )
-    });
+    let speeds = [0.1, 1.0, 10.0]
+        .map(|excess| number(&groups, title, &format!("speed, dynamic peak force {excess} times")));
     assert!(sound < speeds[0] && speeds[0] < speeds[1] && speeds[1] < speeds[2]);
     // To first order V = c (1 + excess of the overlap (n − 1)/6), overlap growing by 2/3 of 0.1.
     assert_close(speeds[0], sound * (1.0 + 0.1 * (2.0 / 3.0) / 12.0), 1e-3);
@@ -233,9 +181,7 @@ fn small_waves_on_a_load_run_at_the_speed_of_sound_and_large_ones_faster() {
 fn parts_of_the_rig_are_listed_with_their_numbers_and_as_not_computed_with() {
     let rig = |name: &str| {
         let groups = described(&preset(name).unwrap());
-        groups
-            .into_iter()
-            .find(|group| group.title.starts_with("Rig"))
+        groups.into_iter().find(|group| group.title.starts_with("Rig"))
     };
     let found = rig("dry").unwrap();
     assert!(found.title.contains("nothing is computed"));
@@ -277,14 +223,9 @@ fn normal_modes_of_a_long_loaded_row_are_said_to_be_missing() {
     let long = long.set(&[("beads[0].count", 201.0)]).unwrap();
     let (chain, _) = long.chain(None).unwrap();
     let groups = describe_theory(&long, &chain).unwrap();
-    let modes = groups
-        .iter()
-        .find(|group| group.title.starts_with("Normal modes"));
+    let modes = groups.iter().find(|group| group.title.starts_with("Normal modes"));
     let row = &modes.unwrap().rows[0];
-    assert!(
-        matches!(&row.value, Value::Text(why) if why.contains("200 beads")),
-        "{row:?}"
-    );
+    assert!(matches!(&row.value, Value::Text(why) if why.contains("200 beads")), "{row:?}");
 }
 
 /// What theory expects of the preset `hertz` with a part of its file replaced.
@@ -293,9 +234,7 @@ fn expected_of(from: &str, to: &str) -> Option<Group> {
     assert!(file.text.contains(from));
     let experiment = Experiment::from_text("row.toml", &file.text.replace(from, to)).unwrap();
     let groups = described(&experiment);
-    groups
-        .into_iter()
-        .find(|group| group.title.starts_with("Expected of theory"))
+    groups.into_iter().find(|group| group.title.starts_with("Expected of theory"))
 }
 
 #[test]
@@ -310,9 +249,6 @@ fn theory_expects_a_time_of_flight_only_where_one_pulse_runs_down_a_touching_row
         let striker = format!("[striker]\nmass = \"{mass}\"\nradius = \"6.35 mm\"");
         let group = expected_of("[striker]", &striker).unwrap();
         let said = &group.rows[0].value;
-        assert!(
-            matches!(said, Value::Text(why) if why.starts_with("not estimated")),
-            "{group:?}"
-        );
+        assert!(matches!(said, Value::Text(why) if why.starts_with("not estimated")), "{group:?}");
     }
 }

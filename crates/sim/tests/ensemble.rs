@@ -14,12 +14,8 @@ fn plans(name: &str, speeds_m_s: &[f64], accuracy: f64) -> Vec<Plan> {
 }
 
 fn fly(plans: &[Plan]) -> Vec<Shot> {
-    let shots = run_plans(
-        plans,
-        Control::PerShot { checked: false },
-        InstructionSet::default(),
-        &|| {},
-    );
+    let shots =
+        run_plans(plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
     shots.into_iter().map(Result::unwrap).collect()
 }
 
@@ -28,19 +24,13 @@ const SPEEDS: [f64; 11] = [0.075, 0.1, 0.14, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0
 #[test]
 fn ensembles_give_the_accuracy_asked_on_the_papers_chains() {
     for name in CASES {
-        let exact: Vec<_> = plans(name, &SPEEDS, 1e-9)
-            .iter()
-            .map(|p| shoot(p).unwrap())
-            .collect();
+        let exact: Vec<_> = plans(name, &SPEEDS, 1e-9).iter().map(|p| shoot(p).unwrap()).collect();
         for accuracy in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7] {
             let shots = fly(&plans(name, &SPEEDS, accuracy));
             for ((shot, exact), speed) in shots.iter().zip(&exact).zip(SPEEDS) {
                 let error = shot.flight.unwrap().change(&exact.flight.unwrap());
                 // A check determines the change to another step, not the error itself.
-                assert!(
-                    error < 2.0 * accuracy,
-                    "{name} at {speed} m/s, {accuracy:e}: {error:e}"
-                );
+                assert!(error < 2.0 * accuracy, "{name} at {speed} m/s, {accuracy:e}: {error:e}");
             }
         }
     }
@@ -78,20 +68,14 @@ fn a_shot_has_the_same_bits_whatever_flies_along_and_on_any_number_of_threads() 
 
 fn same_bits(plans: &[Plan]) {
     let together = fly(plans);
-    let alone: Vec<Shot> = plans
-        .iter()
-        .flat_map(|plan| fly(std::slice::from_ref(plan)))
-        .collect();
+    let alone: Vec<Shot> = plans.iter().flat_map(|plan| fly(std::slice::from_ref(plan))).collect();
     assert_eq!(together, alone);
     let backwards: Vec<Plan> = plans.iter().rev().cloned().collect();
     let mut reversed = fly(&backwards);
     reversed.reverse();
     assert_eq!(together, reversed);
     for threads in [1, 2, 7] {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         assert_eq!(together, pool.install(|| fly(plans)), "{threads} threads");
     }
 }
@@ -121,12 +105,8 @@ fn a_plan_that_cannot_be_flown_stops_no_other() {
     let mut plans = plans("dry", &[0.3, 0.4, 0.5], 1e-5);
     let exact = fly(&plans);
     plans[1].sensor_bead = 99;
-    let shots = run_plans(
-        &plans,
-        Control::PerShot { checked: false },
-        InstructionSet::default(),
-        &|| {},
-    );
+    let shots =
+        run_plans(&plans, Control::PerShot { checked: false }, InstructionSet::default(), &|| {});
     assert!(shots[1].is_err());
     for at in [0, 2] {
         assert_eq!(shots[at].as_ref().unwrap(), &exact[at]);
@@ -136,12 +116,9 @@ fn a_plan_that_cannot_be_flown_stops_no_other() {
 #[test]
 fn a_checked_ensemble_tells_the_accuracy_it_reached() {
     let plans = plans("gear", &SPEEDS, 1e-6);
-    for shot in run_plans(
-        &plans,
-        Control::PerShot { checked: true },
-        InstructionSet::default(),
-        &|| {},
-    ) {
+    for shot in
+        run_plans(&plans, Control::PerShot { checked: true }, InstructionSet::default(), &|| {})
+    {
         assert!(shot.unwrap().accuracy_reached.unwrap() <= 1e-6);
     }
 }
@@ -172,9 +149,8 @@ fn random_plans(count: u64) -> Vec<Plan> {
     let mut state = 20_u64;
     let mut random = move |low: f64, high: f64| {
         // An additive generator is random enough to choose chains.
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let plan = |_| {
@@ -208,12 +184,9 @@ fn random_plans(count: u64) -> Vec<Plan> {
             }
         }
         if random(0.0, 1.0) < 0.3 {
-            plan.chain.push = hertzchain_chain::Push::Constant {
-                force_n: random(0.01, 3.0),
-            };
+            plan.chain.push = hertzchain_chain::Push::Constant { force_n: random(0.01, 3.0) };
         }
-        plan.for_flights()
-            .with_accuracy(10_f64.powf(-random(4.0, 6.5)))
+        plan.for_flights().with_accuracy(10_f64.powf(-random(4.0, 6.5)))
     };
     (0..count).map(plan).collect()
 }
@@ -221,10 +194,7 @@ fn random_plans(count: u64) -> Vec<Plan> {
 #[test]
 fn over_a_thousand_random_rows_no_error_is_twice_the_accuracy_asked() {
     let plans = random_plans(1000);
-    let tight: Vec<Plan> = plans
-        .iter()
-        .map(|plan| plan.clone().with_accuracy(1e-8))
-        .collect();
+    let tight: Vec<Plan> = plans.iter().map(|plan| plan.clone().with_accuracy(1e-8)).collect();
     // Below what equal steps reach: the wave loop computes these once.
     let exact = run_plans(&tight, Control::None, InstructionSet::default(), &|| {});
     let shots = fly(&plans);
@@ -233,11 +203,7 @@ fn over_a_thousand_random_rows_no_error_is_twice_the_accuracy_asked() {
         let error = shot.flight.unwrap().change(&exact.flight.unwrap());
         // What a rerun changes is not the error itself. Measured: 1.45 in the
         // ensemble loop, 1.03 in the wave loop.
-        assert!(
-            error < 2.0 * plan.accuracy,
-            "{error:e}, asked {:e}",
-            plan.accuracy
-        );
+        assert!(error < 2.0 * plan.accuracy, "{error:e}, asked {:e}", plan.accuracy);
     }
     let fast = shots.iter().filter(|shot| shot.step_s.is_some()).count();
     assert!(fast > 500, "{fast} by the ensemble loop");
@@ -281,10 +247,7 @@ bead = 7
 #[test]
 fn maxima_that_loose_runs_do_not_show_are_not_passed_over() {
     let experiment = Experiment::from_text("light-stop.toml", LIGHT_STOP).unwrap();
-    let plan = Plan::from_experiment(&experiment, None)
-        .unwrap()
-        .0
-        .for_flights();
+    let plan = Plan::from_experiment(&experiment, None).unwrap().0.for_flights();
     for accuracy in [1e-4, 1e-5, 1e-6] {
         let shot = fly(&[plan.clone().with_accuracy(accuracy)]).remove(0);
         // 221.16 us by `bench/random`; without the maximum the next one is 12 ms off.

@@ -43,10 +43,8 @@ fn flights_and_rebound_of_a_long_chain_are_those_of_a_shot_followed_for_long() {
     let plan = row(600);
     let shot = shoot(&plan).unwrap();
     let wall_s = shot.passage.as_ref().unwrap().wall.time_s;
-    let longer = shoot(&Plan {
-        duration_s: Some(4.2 * wall_s),
-        ..plan.clone().with_accuracy(1e-8)
-    });
+    let longer =
+        shoot(&Plan { duration_s: Some(4.2 * wall_s), ..plan.clone().with_accuracy(1e-8) });
     let longer = longer.unwrap();
     // To the accuracy asked.
     assert!(shot.flight.unwrap().change(&longer.flight.unwrap()) < 1e-6);
@@ -56,12 +54,7 @@ fn flights_and_rebound_of_a_long_chain_are_those_of_a_shot_followed_for_long() {
     // The pulse is back after two flights; the search alone would go on to four.
     assert!(shot.finished && shot.duration_s < 2.5 * wall_s);
     let reported = |note: &&String| note.contains("long chain's shot ended");
-    assert_eq!(
-        shot.notes.iter().filter(reported).count(),
-        1,
-        "{:?}",
-        shot.notes
-    );
+    assert_eq!(shot.notes.iter().filter(reported).count(), 1, "{:?}", shot.notes);
 }
 
 /// A row that keeps its energy takes fewer steps than the dry ones that the estimate is from.
@@ -71,9 +64,6 @@ fn the_steps_of_a_shot_are_estimated_to_a_factor_of_two() {
         let plan = row(count);
         let expected = Expected::of(&plan).unwrap().steps;
         let taken = shoot(&plan).unwrap().work.steps as f64;
-        assert!(
-            (0.5..2.0).contains(&(expected / taken)),
-            "{expected} for {taken}"
-        );
+        assert!((0.5..2.0).contains(&(expected / taken)), "{expected} for {taken}");
     }
 }

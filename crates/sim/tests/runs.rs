@@ -10,10 +10,7 @@ fn row(name: &str) -> Experiment {
 }
 
 fn options(experiment: &Experiment, error_control: ErrorControl) -> BatchOptions {
-    BatchOptions {
-        error_control,
-        ..BatchOptions::of(experiment)
-    }
+    BatchOptions { error_control, ..BatchOptions::of(experiment) }
 }
 
 fn bits(rows: &Rows) -> Vec<u64> {
@@ -37,11 +34,7 @@ fn cut(batch: &Batch, of: usize) -> Rows {
 fn shards_have_the_bits_of_the_batch_however_errors_are_controlled() {
     let dry = row("dry");
     let speeds = parse_speeds("log:0.1:1.2:163").unwrap();
-    for control in [
-        ErrorControl::PerShot,
-        ErrorControl::Calibrated,
-        ErrorControl::None,
-    ] {
+    for control in [ErrorControl::PerShot, ErrorControl::Calibrated, ErrorControl::None] {
         let batch = Batch::new(&dry, speeds.clone(), options(&dry, control)).unwrap();
         let whole = batch.run(Shard::WHOLE, &|| {});
         let calibrated = whole.error_control.starts_with("calibrated");
@@ -83,10 +76,7 @@ fn a_poisoned_shot_is_reported_and_changes_no_other() {
         let places: Vec<usize> = found.failed.iter().map(|failed| failed.place).collect();
         assert_eq!(places, [1, 3, 5]);
         assert!(found.failed.iter().all(|failed| !failed.why.is_empty()));
-        assert_eq!(
-            found.flights(),
-            rows(sound.clone(), ErrorControl::PerShot, 1).flights()
-        );
+        assert_eq!(found.flights(), rows(sound.clone(), ErrorControl::PerShot, 1).flights());
         let tuned = [1, 3].map(|of| bits(&rows(poisoned.clone(), ErrorControl::Calibrated, of)));
         assert_eq!(tuned[0], tuned[1]);
     }
@@ -107,9 +97,7 @@ fn numbers_that_differ_from_shot_to_shot_are_those_of_experiments_of_their_own()
     }
     let refused = |path: &str, values: usize| {
         let run = Batch::new(&dry, vec![0.5; 4], BatchOptions::of(&dry)).unwrap();
-        run.with_number(path, vec![1.0; values])
-            .unwrap_err()
-            .to_string()
+        run.with_number(path, vec![1.0; values]).unwrap_err().to_string()
     };
     assert!(refused("young_modulus", 3).contains("3 values for 4 shots"));
     assert!(refused("yong_modulus", 4).contains("young_modulus"));
@@ -123,10 +111,7 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         run.name(Shard::new(1, 2).unwrap())
     };
     let plain = name(&dry, &[0.5, 1.0], BatchOptions::of(&dry));
-    assert!(
-        plain.starts_with("sweep-") && plain.ends_with("-1-of-2"),
-        "{plain}"
-    );
+    assert!(plain.starts_with("sweep-") && plain.ends_with("-1-of-2"), "{plain}");
     let moved = Experiment::from_text("/elsewhere/row.toml", dry.text()).unwrap();
     let moved = moved.set(&[("beads[0].count", 12.0)]).unwrap();
     assert_eq!(name(&moved, &[0.5, 1.0], BatchOptions::of(&dry)), plain);
@@ -135,46 +120,11 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
         name(&row("hertz"), &[0.5, 1.0], how),
         name(&dry, &[1.0, 0.5], how),
         name(&dry, &[0.5, 1.0_f64.next_up()], how),
-        name(
-            &dry,
-            &[0.5, 1.0],
-            BatchOptions {
-                accuracy: 1e-5,
-                ..how
-            },
-        ),
-        name(
-            &dry,
-            &[0.5, 1.0],
-            BatchOptions {
-                rebound: true,
-                ..how
-            },
-        ),
-        name(
-            &dry,
-            &[0.5, 1.0],
-            BatchOptions {
-                checked: true,
-                ..how
-            },
-        ),
-        name(
-            &dry,
-            &[0.5, 1.0],
-            BatchOptions {
-                duration_s: Some(1e-3),
-                ..how
-            },
-        ),
-        name(
-            &dry,
-            &[0.5, 1.0],
-            BatchOptions {
-                error_control: ErrorControl::PerShot,
-                ..how
-            },
-        ),
+        name(&dry, &[0.5, 1.0], BatchOptions { accuracy: 1e-5, ..how }),
+        name(&dry, &[0.5, 1.0], BatchOptions { rebound: true, ..how }),
+        name(&dry, &[0.5, 1.0], BatchOptions { checked: true, ..how }),
+        name(&dry, &[0.5, 1.0], BatchOptions { duration_s: Some(1e-3), ..how }),
+        name(&dry, &[0.5, 1.0], BatchOptions { error_control: ErrorControl::PerShot, ..how }),
     ];
     for (at, other) in others.iter().enumerate() {
         assert_ne!(other, &plain, "{at}");
@@ -183,9 +133,6 @@ fn a_name_follows_from_every_input_and_from_nothing_else() {
     let run = Batch::new(&dry, vec![0.5, 1.0], how).unwrap();
     // It is kept once it was asked for, but not by a run with other numbers.
     assert_eq!(run.fingerprint(), run.clone().fingerprint());
-    let numbered = run
-        .clone()
-        .with_number("poisson_ratio", vec![0.3, 0.3])
-        .unwrap();
+    let numbered = run.clone().with_number("poisson_ratio", vec![0.3, 0.3]).unwrap();
     assert_ne!(numbered.fingerprint(), run.fingerprint());
 }

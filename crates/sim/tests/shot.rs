@@ -1,9 +1,5 @@
 //! Shots of the paper's chain.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::CASES;
 use hertzchain_chain::Sensor;
@@ -15,9 +11,7 @@ use hertzchain_sim::{
 
 fn plan(name: &str, speed_m_s: f64) -> Plan {
     let experiment = preset(name).unwrap();
-    Plan::from_experiment(&experiment, Some(speed_m_s))
-        .unwrap()
-        .0
+    Plan::from_experiment(&experiment, Some(speed_m_s)).unwrap().0
 }
 
 fn flight(plan: &Plan) -> Flight {
@@ -35,20 +29,14 @@ const REFERENCE: [(&str, f64, f64, f64); 4] = [
 
 fn assert_reference(solver: Solver, accuracy: f64, allowed: f64) {
     for (name, speed_m_s, incident_us, reflected_us) in REFERENCE {
-        let plan = Plan {
-            solver,
-            ..plan(name, speed_m_s).with_accuracy(accuracy)
-        };
+        let plan = Plan { solver, ..plan(name, speed_m_s).with_accuracy(accuracy) };
         let flight = flight(&plan);
         let deviations = [
             flight.incident_s * 1e6 / incident_us - 1.0,
             flight.reflected_s.unwrap() * 1e6 / reflected_us - 1.0,
         ];
         for deviation in deviations {
-            assert!(
-                deviation.abs() < allowed,
-                "{name} at {speed_m_s} m/s: {deviation:e}"
-            );
+            assert!(deviation.abs() < allowed, "{name} at {speed_m_s} m/s: {deviation:e}");
         }
     }
 }
@@ -91,17 +79,9 @@ fn a_checked_shot_knows_what_it_reached() {
 #[test]
 fn accuracy_beyond_double_precision_is_said_to_be_so() {
     let shot = checked(&plan("hertz", 1.0).with_accuracy(1e-13));
-    assert!(
-        shot.notes
-            .iter()
-            .any(|note| note.contains("beyond double precision"))
-    );
+    assert!(shot.notes.iter().any(|note| note.contains("beyond double precision")));
     // Rounding, summed over 20,000 steps, leaves about 1e-11.
-    assert!(
-        shot.accuracy_reached.unwrap() < 5e-11,
-        "{:?}",
-        shot.accuracy_reached
-    );
+    assert!(shot.accuracy_reached.unwrap() < 5e-11, "{:?}", shot.accuracy_reached);
 }
 
 #[test]
@@ -110,10 +90,7 @@ fn energy_is_balanced_to_the_asked_accuracy() {
         for accuracy in [1e-6, 1e-9] {
             let shot = shoot(&plan(name, 0.5).with_accuracy(accuracy).with_budget()).unwrap();
             let residual = shot.budget.as_ref().map(Budget::relative_residual).unwrap();
-            assert!(
-                residual.abs() < accuracy,
-                "{name}: {residual:e} at {accuracy:e}"
-            );
+            assert!(residual.abs() < accuracy, "{name}: {residual:e} at {accuracy:e}");
         }
     }
 }
@@ -122,10 +99,7 @@ fn energy_is_balanced_to_the_asked_accuracy() {
 fn hertz_pulses_keep_their_time_whatever_the_pick() {
     let peak = flight(&plan("hertz", 1.0));
     for pick in [Pick::Flank(0.1), Pick::Flank(0.5), Pick::CrossCorrelation] {
-        let other = flight(&Plan {
-            pick,
-            ..plan("hertz", 1.0)
-        });
+        let other = flight(&Plan { pick, ..plan("hertz", 1.0) });
         // The wall's pulse is higher and wider than the bead's: picks differ
         // by a fraction of its width, 30 µs of 631 µs.
         let change = other.change(&peak);
@@ -155,10 +129,7 @@ fn one_shot_can_be_timed_in_every_way() {
     let all = shoot(&plan("gear", 0.2).comparing_picks()).unwrap();
     let flights = std::iter::once(all.flight).chain(all.compared);
     for (pick, flight) in Pick::ALL.into_iter().zip(flights) {
-        let alone = shoot(&Plan {
-            pick,
-            ..plan("gear", 0.2)
-        });
+        let alone = shoot(&Plan { pick, ..plan("gear", 0.2) });
         assert_eq!(flight, alone.unwrap().flight, "{pick:?}");
     }
 }
@@ -166,21 +137,14 @@ fn one_shot_can_be_timed_in_every_way() {
 #[test]
 fn correlated_times_do_not_depend_on_the_accuracy_beyond_it() {
     let at = |accuracy| {
-        flight(&Plan {
-            pick: Pick::CrossCorrelation,
-            ..plan("dry", 0.5).with_accuracy(accuracy)
-        })
+        flight(&Plan { pick: Pick::CrossCorrelation, ..plan("dry", 0.5).with_accuracy(accuracy) })
     };
     assert!(at(1e-6).change(&at(1e-9)) < 1e-6);
 }
 
 #[test]
 fn a_pulse_that_does_not_arrive_is_a_result_not_an_error() {
-    let shot = shoot(&Plan {
-        duration_s: Some(50e-6),
-        ..plan("dry", 0.5)
-    })
-    .unwrap();
+    let shot = shoot(&Plan { duration_s: Some(50e-6), ..plan("dry", 0.5) }).unwrap();
     assert!(shot.flight.is_none());
     let reason = shot.passage.unwrap_err().to_string();
     assert!(reason.contains("no pulse reached the wall"), "{reason}");
@@ -212,10 +176,7 @@ fn nonsense_is_refused() {
 fn a_trace_that_would_fill_the_memory_is_refused_before_it_does() {
     for solver in [Solver::Adaptive, Solver::Rk4 { step_s: Some(1e-7) }] {
         let sensors = vec![Sensor::Bead(7), Sensor::Contact(40)];
-        let plan = Plan {
-            solver,
-            ..plan("dry", 0.5).watching(sensors, Some(1e-18))
-        };
+        let plan = Plan { solver, ..plan("dry", 0.5).watching(sensors, Some(1e-18)) };
         let text = shoot(&plan).unwrap_err().to_string();
         let part = "a trace with 2 sensors, a sample every 1e-18 s,";
         assert!(text.contains(part), "{text}");
@@ -224,14 +185,8 @@ fn a_trace_that_would_fill_the_memory_is_refused_before_it_does() {
 
 #[test]
 fn a_fixed_step_that_would_take_too_long_is_refused_up_front_with_its_steps() {
-    for solver in [
-        Solver::Rk4 { step_s: None },
-        Solver::Verlet { step_s: None },
-    ] {
-        let plan = Plan {
-            solver,
-            ..plan("dry", 0.5).with_accuracy(1e-10)
-        };
+    for solver in [Solver::Rk4 { step_s: None }, Solver::Verlet { step_s: None }] {
+        let plan = Plan { solver, ..plan("dry", 0.5).with_accuracy(1e-10) };
         let error = shoot(&plan).unwrap_err();
         assert!(matches!(error, StudyError::NotConverged(_)), "{error}");
         let text = error.to_string();
@@ -240,10 +195,7 @@ fn a_fixed_step_that_would_take_too_long_is_refused_up_front_with_its_steps() {
             let end = rest.find([' ', ',']).unwrap();
             rest[..end].parse().unwrap()
         };
-        let (steps, order) = (
-            number("would take about "),
-            number("divides the error only by 2^"),
-        );
+        let (steps, order) = (number("would take about "), number("divides the error only by 2^"));
         // The cubic term acts at once on impact, which leaves every method an order
         // between 1 and 2: from 7e-7 at 2e4 steps it is a thousandfold to go.
         assert!((1.0..2.0).contains(&order), "{solver:?}: {order}");
@@ -289,14 +241,8 @@ fn a_plain_shot_knows_its_error_in_harsh_short_rows() {
             let asked = plan.clone().with_accuracy(accuracy).with_budget();
             let shot = shoot_estimated(&asked).unwrap();
             let (error, reached) = (shot.flight.unwrap().change(&exact), shot.accuracy_reached);
-            assert!(
-                error <= reached.unwrap(),
-                "{law}, {accuracy:e}: {error:e} {reached:?}"
-            );
-            assert!(
-                reached.unwrap() <= accuracy,
-                "{law}, {accuracy:e}: {reached:?}"
-            );
+            assert!(error <= reached.unwrap(), "{law}, {accuracy:e}: {error:e} {reached:?}");
+            assert!(reached.unwrap() <= accuracy, "{law}, {accuracy:e}: {reached:?}");
         }
     }
 }
@@ -305,10 +251,7 @@ fn a_plain_shot_knows_its_error_in_harsh_short_rows() {
 fn a_plain_shot_of_the_papers_rows_keeps_its_bits() {
     for name in CASES {
         let plan = plan(name, 0.3).with_budget();
-        assert_eq!(
-            shoot_estimated(&plan).unwrap().flight,
-            shoot(&plan).unwrap().flight
-        );
+        assert_eq!(shoot_estimated(&plan).unwrap().flight, shoot(&plan).unwrap().flight);
     }
 }
 

@@ -9,11 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// A batch that follows the striker.
 fn batch(name: &str, speeds_m_s: Vec<f64>, accuracy: f64) -> Batch {
     let experiment = preset(name).unwrap();
-    let options = BatchOptions {
-        accuracy,
-        rebound: true,
-        ..BatchOptions::of(&experiment)
-    };
+    let options = BatchOptions { accuracy, rebound: true, ..BatchOptions::of(&experiment) };
     Batch::new(&experiment, speeds_m_s, options).unwrap()
 }
 
@@ -35,10 +31,7 @@ fn hertz_tof_scales_as_speed_to_minus_one_fifth() {
 #[test]
 fn a_sweep_gives_the_same_bits_on_one_and_on_two_threads() {
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| hertz(1e-6, "0.1:1:5").rows.flights())
     };
     assert_eq!(on(1), on(2));

@@ -23,11 +23,7 @@ impl<T: Copy> Aligned<T> {
         let values = vec![value; length + spare];
         // Where alignment is not known, any place will do.
         let first = values.as_ptr().align_offset(LINE).min(spare);
-        Self {
-            values,
-            first,
-            length,
-        }
+        Self { values, first, length }
     }
 }
 

@@ -89,10 +89,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         let scatter = |of: fn(&System) -> &[f64]| {
             let mut values = Aligned::of(N::default(), flat);
             for (lane, system) in systems.iter().enumerate() {
-                let moved = of(system)
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, value)| **value != 0.0);
+                let moved = of(system).iter().enumerate().filter(|(_, value)| **value != 0.0);
                 for (j, value) in moved {
                     values[j * lanes + lane] = N::of(*value);
                 }
@@ -101,9 +98,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         };
         let x = scatter(|system| &system.displacement_m);
         let v = scatter(|system| &system.velocity_m_s);
-        let mut loads = chains
-            .iter()
-            .flat_map(|system| system.static_force_n.iter());
+        let mut loads = chains.iter().flat_map(|system| system.static_force_n.iter());
         let loaded = loads.any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
         let offset_m = Column::new(first.contacts(), shared, f64::NEG_INFINITY, |c, lane| {
@@ -129,9 +124,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             motion: Motion::new(x, v, inverse_mass, acts),
             weights: Scaled::new(schedule.row(0), &paces),
             at_rest: loaded.then(|| Aligned::of(N::default(), flat)),
-            sections: (0..first.sections.len())
-                .map(|i| section((systems, chains), i))
-                .collect(),
+            sections: (0..first.sections.len()).map(|i| section((systems, chains), i)).collect(),
             force_n: Aligned::of(N::default(), flat + W),
             paces,
             offset_m,
@@ -165,11 +158,8 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         let window = std::mem::replace(&mut self.window, whole);
         self.forces();
         let force = &mut self.force_n[self.lanes..];
-        for (at_rest, force) in self
-            .at_rest
-            .iter_mut()
-            .flat_map(|at_rest| at_rest.iter_mut())
-            .zip(force)
+        for (at_rest, force) in
+            self.at_rest.iter_mut().flat_map(|at_rest| at_rest.iter_mut()).zip(force)
         {
             *at_rest = N::of(-std::mem::take(force).into());
         }
@@ -186,8 +176,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         if self.steps <= self.schedule.last_row() {
             self.weights = Scaled::new(self.schedule.row(self.steps), &self.paces);
         }
-        self.motion
-            .step(simd, &self.window, self.lanes, &self.force_n, &self.weights);
+        self.motion.step(simd, &self.window, self.lanes, &self.force_n, &self.weights);
         if !self.edges.is_empty() {
             self.correct_edges();
         }
@@ -237,9 +226,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
 
     /// Lets sleep what stays as it is for a number of steps.
     pub(super) fn look(&mut self, steps: usize) {
-        let ahead_s = self
-            .paces
-            .map(|pace| N::of((steps + 1) as f64 * pace.step_s));
+        let ahead_s = self.paces.map(|pace| N::of((steps + 1) as f64 * pace.step_s));
         self.window.look(self.set, places!(self), &ahead_s);
     }
 
@@ -263,12 +250,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     /// Finds openings and closings within the last step.
     fn look_at_changes(&mut self, mut changes: Changes<W>, follow: bool) {
         let awake = self.window.contacts.clone();
-        let changed = changes.look(
-            self.set,
-            (awake, self.lanes),
-            &self.offset_m,
-            &self.motion.x,
-        );
+        let changed = changes.look(self.set, (awake, self.lanes), &self.offset_m, &self.motion.x);
         if follow && self.steps > self.schedule.last_row() {
             for &at in changed {
                 if let Some(edge) = self.edge(at) {
@@ -362,20 +344,14 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         for values in [&mut self.motion.x, &mut self.motion.v] {
             values.copy_within(lanes..2 * lanes, last * lanes);
         }
-        self.motion
-            .newest_mut()
-            .copy_within(lanes..2 * lanes, last * lanes);
+        self.motion.newest_mut().copy_within(lanes..2 * lanes, last * lanes);
     }
 
     /// What acts on single bodies beside contacts: the striker's weight, the
     /// spring on bead 1, threads.
     fn push(&mut self, mut external: Aligned<N>) {
         for (lane, system) in self.systems.iter().enumerate() {
-            let bodies = if system.pendulum_per_s2 > 0.0 {
-                system.bodies()
-            } else {
-                2
-            };
+            let bodies = if system.pendulum_per_s2 > 0.0 { system.bodies() } else { 2 };
             for body in 0..bodies {
                 let at = body * self.lanes + lane;
                 let pushed = system.pushed(body, self.motion.x[at].into());
@@ -426,9 +402,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             }
         };
         let until_s = match system.flies_free() {
-            true => (0..system.contacts())
-                .map(touches_s)
-                .fold(f64::INFINITY, f64::min),
+            true => (0..system.contacts()).map(touches_s).fold(f64::INFINITY, f64::min),
             false => 0.0,
         };
         until_s / self.paces[lane].step_s
@@ -478,9 +452,5 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
 
 /// The larger of two; NaN, which `max` would lose, if either is.
 fn larger_or_nan(one: f64, other: f64) -> f64 {
-    if other <= one || one.is_nan() {
-        one
-    } else {
-        other
-    }
+    if other <= one || one.is_nan() { one } else { other }
 }

@@ -62,11 +62,7 @@ impl<N: Number<W>, const W: usize> Scaled<N, W> {
                 position[k][lane] = N::of(moved * weights.position[k]);
             }
         }
-        Self {
-            drift: paces.map(|pace| N::of(pace.step_s * weights.drift)),
-            velocity,
-            position,
-        }
+        Self { drift: paces.map(|pace| N::of(pace.step_s * weights.drift)), velocity, position }
     }
 }
 
@@ -186,9 +182,7 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
         (_, Some(external)) => {
             let (mass, from) = (motion.inverse_mass.reader(), awake.start);
             let external = chunks_of(external, awake);
-            bodies.step(simd, scaled, |i, net| {
-                net * load(mass.at(from + i)) + load(&external[i])
-            });
+            bodies.step(simd, scaled, |i, net| net * load(mass.at(from + i)) + load(&external[i]));
         }
     }
 }

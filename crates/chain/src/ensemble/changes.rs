@@ -16,10 +16,7 @@ pub(super) struct Changes<const W: usize> {
 
 impl<const W: usize> Changes<W> {
     pub(super) fn new(chunks: usize) -> Self {
-        Self {
-            open: vec![0; chunks],
-            changed: Vec::with_capacity(chunks * W),
-        }
+        Self { open: vec![0; chunks], changed: Vec::with_capacity(chunks * W) }
     }
 
     /// A contact, by its place in the flat array, is open from now on.

@@ -47,10 +47,7 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
         let equal = all.windows(2).all(|pair| pair[0] == pair[1]);
         Self {
             stride: usize::from(!equal),
-            only: values
-                .first()
-                .copied()
-                .filter(|first| values.iter().all(|v| v == first)),
+            only: values.first().copied().filter(|first| values.iter().all(|v| v == first)),
             values,
         }
     }
@@ -58,11 +55,7 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
     /// All its chunks, if they are equal, as one.
     #[inline(always)]
     pub(super) fn uniform(&self) -> Option<&[N; W]> {
-        self.values
-            .as_chunks()
-            .0
-            .first()
-            .filter(|_| self.stride == 0)
+        self.values.as_chunks().0.first().filter(|_| self.stride == 0)
     }
 
     #[inline(always)]
@@ -72,10 +65,7 @@ impl<N: Number<W>, const W: usize> Column<N, W> {
 
     #[inline(always)]
     pub(super) fn reader(&self) -> Reader<'_, N, W> {
-        Reader {
-            chunks: self.values.as_chunks().0,
-            stride: self.stride,
-        }
+        Reader { chunks: self.values.as_chunks().0, stride: self.stride }
     }
 }
 

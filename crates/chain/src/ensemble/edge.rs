@@ -24,11 +24,7 @@ impl Leading {
         let (near, far) = (force(0.25) - at_once, force(1.0) - at_once);
         // near = c₁/2 + c₃/8, far = c₁ + c₃.
         let root = (8.0 * near - far) / 3.0;
-        Self {
-            at_once,
-            root,
-            high: far - root,
-        }
+        Self { at_once, root, high: far - root }
     }
 
     /// How large the force is a step from its edge.

@@ -217,9 +217,8 @@ fn check(shot: &Shot<'_>, settings: &Settings) -> Result<(), SolveError> {
         return Err(SolveError::Refused(why.to_owned()));
     }
     let missing = settings.sensors.iter().find(|sensor| !system.has(**sensor));
-    missing.map_or(Ok(()), |sensor| {
-        Err(SolveError::Refused(format!("the chain has no {sensor:?}")))
-    })
+    missing
+        .map_or(Ok(()), |sensor| Err(SolveError::Refused(format!("the chain has no {sensor:?}"))))
 }
 
 #[derive(Clone, Debug)]
@@ -274,10 +273,7 @@ fn fire_block<N: Number<W>, const W: usize>(
     let extremes = |sensor| recorder.extremes(sensor, settings.set);
     let extremes: Vec<Vec<Vec<usize>>> = (0..settings.sensors.len()).map(extremes).collect();
     for (at, lane) in flying.into_iter().enumerate() {
-        let clock = Clock {
-            schedule,
-            step_s: steps_s[at],
-        };
+        let clock = Clock { schedule, step_s: steps_s[at] };
         let signals = settings.sensors.iter().enumerate().map(|(index, &sensor)| {
             let trace = Trace {
                 samples: recorder.samples(index, at),
@@ -316,9 +312,7 @@ fn fly<N: Number<W>, const W: usize>(
     let mut behind = leaves.then(|| Behind::new(count, contacts, &settings.sensors));
     while lanes.iter().any(|lane| lane.state == State::Flying) {
         if !wanted() {
-            lanes
-                .iter_mut()
-                .for_each(|lane| lane.break_off(block.steps));
+            lanes.iter_mut().for_each(|lane| lane.break_off(block.steps));
             return;
         }
         dispatch!(settings.set.level(), simd => simd.vectorize(

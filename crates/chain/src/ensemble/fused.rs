@@ -84,12 +84,7 @@ struct Fused<T, N, const W: usize> {
 
 impl<T: Sum, N: Number<W>, const W: usize> Fused<T, N, W> {
     fn new((contacts, first, coefficients): (Range<usize>, usize, Vec<Column<N, W>>)) -> Self {
-        Self {
-            contacts,
-            first,
-            coefficients,
-            sum: PhantomData,
-        }
+        Self { contacts, first, coefficients, sum: PhantomData }
     }
 
     #[inline(always)]
@@ -169,10 +164,7 @@ fn sum<T: Sum, S: Simd, N: Number<W>, const W: usize>(
     };
     // Minus 0 changes no sum and no sign: the compiler leaves it out.
     let none = N::Wide::<S>::simd_from(simd, N::of(-0.0));
-    let nothing = Split {
-        rooted: none,
-        plain: none,
-    };
+    let nothing = Split { rooted: none, plain: none };
     let Split { rooted, plain } = T::add_to(nothing, k, contact);
     touch.root.mul_add(rooted, plain)
 }

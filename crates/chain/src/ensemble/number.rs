@@ -99,10 +99,7 @@ impl Number<16> for f32 {
     const FOLLOWED: usize = 11;
 
     #[inline(always)]
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "single precision is what is asked for"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "single precision is what is asked for")]
     fn of(value: f64) -> Self {
         value as f32
     }

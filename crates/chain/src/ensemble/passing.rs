@@ -65,10 +65,7 @@ pub(super) struct Passing {
 impl Passing {
     /// Of a lane in which a pulse has at least this height times step.
     pub(super) fn new(least: f64) -> Self {
-        Self {
-            least,
-            ..Self::default()
-        }
+        Self { least, ..Self::default() }
     }
 
     /// Whether a value at a step is a pulse's.

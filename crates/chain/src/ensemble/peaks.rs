@@ -76,16 +76,10 @@ impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
     fn maximum(self, step: usize) -> (Maximum, Shape) {
         let schedule = self.clock.schedule;
         if self.last_step < POINTS {
-            let maximum = Maximum {
-                time_s: self.clock.time_s(step),
-                value: self.samples.at(step),
-            };
+            let maximum = Maximum { time_s: self.clock.time_s(step), value: self.samples.at(step) };
             return (maximum, Shape::UNKNOWN);
         }
-        let from = (step - 1)
-            .saturating_sub(REACH)
-            .min(self.last_step - POINTS)
-            + 1;
+        let from = (step - 1).saturating_sub(REACH).min(self.last_step - POINTS) + 1;
         let middle = schedule.time(step);
         let nodes: [f64; POINTS] = std::array::from_fn(|i| schedule.time(from + i) - middle);
         let values = std::array::from_fn(|i| self.samples.at(from + i));
@@ -97,10 +91,7 @@ impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
         let at = step - from;
         let at = highest(&polynomial, nodes[at - 1], nodes[at + 1]);
         let (value, _, curvature) = derivatives(&polynomial, at);
-        let maximum = Maximum {
-            time_s: self.clock.step_s * (middle + at),
-            value,
-        };
+        let maximum = Maximum { time_s: self.clock.step_s * (middle + at), value };
         let step_s = self.clock.step_s;
         let interpolation = match equidistant {
             true => quartic_differs(values, at),
@@ -170,9 +161,7 @@ fn through(nodes: [f64; POINTS], mut differences: [f64; POINTS]) -> [f64; POINTS
 
 fn derivatives(polynomial: &[f64; POINTS], at: f64) -> (f64, f64, f64) {
     let sums = polynomial.iter().rev();
-    sums.fold((0.0, 0.0, 0.0), |(p, d, c), k| {
-        (p * at + k, d * at + p, c * at + 2.0 * d)
-    })
+    sums.fold((0.0, 0.0, 0.0), |(p, d, c), k| (p * at + k, d * at + p, c * at + 2.0 * d))
 }
 
 /// Where the slope passes 0 from above, by Newton's method in a bracket.
@@ -191,11 +180,8 @@ fn highest(polynomial: &[f64; POINTS], mut low: f64, mut high: f64) -> f64 {
             high = at
         }
         let next = at - slope / curvature;
-        let next = if curvature < 0.0 && next > low && next < high {
-            next
-        } else {
-            0.5 * (low + high)
-        };
+        let next =
+            if curvature < 0.0 && next > low && next < high { next } else { 0.5 * (low + high) };
         // What is left is the square of the last change, about.
         if (next - at).abs() <= 1e-5 {
             return next;

@@ -31,11 +31,7 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
             values: Vec::with_capacity((steps + 1) * lanes),
             crest: [N::default(); W],
         };
-        Self {
-            lanes,
-            rows: sensors.iter().map(rows).collect(),
-            sensors: sensors.to_vec(),
-        }
+        Self { lanes, rows: sensors.iter().map(rows).collect(), sensors: sensors.to_vec() }
     }
 
     pub(super) fn sensors(&self) -> usize {
@@ -78,11 +74,7 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
 
     /// Samples of a sensor, by its place in the list, in a lane.
     pub(super) fn samples(&self, sensor: usize, lane: usize) -> Samples<'_, N, W> {
-        Samples {
-            rows: &self.rows[sensor],
-            lanes: self.lanes,
-            lane,
-        }
+        Samples { rows: &self.rows[sensor], lanes: self.lanes, lane }
     }
 
     /// Lane by lane the steps at which a sensor's samples are above both

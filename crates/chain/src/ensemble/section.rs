@@ -51,11 +51,7 @@ pub(super) fn section<N: Number<W>, const W: usize>(
     let lanes = systems.len();
     let sections: Vec<&SectionColumns> = chains.iter().map(|s| &s.sections[index]).collect();
     let plain = systems[0].tension == Tension::Allowed && sections[0].ungated.is_empty();
-    let names: Vec<&str> = sections[0]
-        .gated
-        .iter()
-        .map(|term| term.law.info().name)
-        .collect();
+    let names: Vec<&str> = sections[0].gated.iter().map(|term| term.law.info().name).collect();
     let contacts = sections[0].contacts.clone();
     plain
         .then(|| fuse(&names, contacts, lanes, coefficients(lanes, &sections)))
@@ -72,15 +68,10 @@ fn coefficients<N: Number<W>, const W: usize>(
     let contacts = &sections[0].contacts;
     let first = contacts.start * lanes / W * W / lanes;
     let column = |term: usize, j: usize| {
-        Column::new(
-            contacts.end - first,
-            (lanes, sections.len()),
-            0.0,
-            |c, lane| {
-                let inside = (first + c).checked_sub(contacts.start);
-                inside.map_or(0.0, |c| sections[lane].gated[term].columns.column(j)[c])
-            },
-        )
+        Column::new(contacts.end - first, (lanes, sections.len()), 0.0, |c, lane| {
+            let inside = (first + c).checked_sub(contacts.start);
+            inside.map_or(0.0, |c| sections[lane].gated[term].columns.column(j)[c])
+        })
     };
     let terms = sections[0].gated.iter().enumerate();
     terms

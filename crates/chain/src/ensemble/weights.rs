@@ -80,9 +80,7 @@ impl Schedule {
             times.push(times[times.len() - 1] + length);
         }
         let rows = lengths.iter().enumerate();
-        let rows = rows
-            .map(|(n, &length)| weights(&times[..=n], length))
-            .collect();
+        let rows = rows.map(|(n, &length)| weights(&times[..=n], length)).collect();
         Self { rows, times }
     }
 

@@ -43,8 +43,7 @@ impl<N: Number<W>, const W: usize> Places<'_, N, W> {
     #[inline(always)]
     fn moves<S: Simd>(&self, simd: S, chunk: usize) -> bool {
         let v = N::Wide::<S>::from_slice(simd, &self.v[chunk * W..(chunk + 1) * W]);
-        v.simd_ne(N::Wide::<S>::simd_from(simd, N::default()))
-            .any_true()
+        v.simd_ne(N::Wide::<S>::simd_from(simd, N::default())).any_true()
     }
 }
 

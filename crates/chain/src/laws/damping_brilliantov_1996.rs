@@ -23,10 +23,7 @@ impl Term<1> for DampingBrilliantov1996 {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            relaxation_time_s: values[0],
-            stiffness: values[1],
-        }
+        Self { relaxation_time_s: values[0], stiffness: values[1] }
     }
 
     fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {
@@ -36,10 +33,7 @@ impl Term<1> for DampingBrilliantov1996 {
         if time < 0.0 {
             let what =
                 format!("A = {time:e} s is negative; it needs a Poisson ratio of at most 1/2");
-            return Err(LawError {
-                law: Self::INFO.name,
-                what,
-            });
+            return Err(LawError { law: Self::INFO.name, what });
         }
         Ok([1.5 * time * self.stiffness.unwrap_or_else(|| pair.hertz_stiffness())])
     }

@@ -27,9 +27,7 @@ impl Term<1> for DampingKuwabaraKono {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            coefficient: values[0].unwrap_or(f64::NAN),
-        }
+        Self { coefficient: values[0].unwrap_or(f64::NAN) }
     }
 
     fn coefficients(&self, _pair: &Pair) -> Result<[f64; 1], LawError> {

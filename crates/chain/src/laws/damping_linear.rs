@@ -26,9 +26,7 @@ impl Term<1> for DampingLinear {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            coefficient_n_s_m: values[0].unwrap_or(f64::NAN),
-        }
+        Self { coefficient_n_s_m: values[0].unwrap_or(f64::NAN) }
     }
 
     fn coefficients(&self, _pair: &Pair) -> Result<[f64; 1], LawError> {

@@ -19,13 +19,7 @@ const fn exponent(
     source: Source,
     least: f64,
 ) -> Parameter {
-    Parameter {
-        name,
-        unit: "1",
-        meaning,
-        source,
-        least,
-    }
+    Parameter { name, unit: "1", meaning, source, least }
 }
 
 impl Term<3> for DampingPower {
@@ -46,12 +40,7 @@ impl Term<3> for DampingPower {
                 Source::Required,
                 0.5,
             ),
-            exponent(
-                "overlap_exponent",
-                "exponent p of the overlap",
-                Source::Default(0.0),
-                0.0,
-            ),
+            exponent("overlap_exponent", "exponent p of the overlap", Source::Default(0.0), 0.0),
         ],
         validity: "phenomenological; c, p, q from measured decay",
         reference: "CarreteroGonzalez2009",
@@ -61,11 +50,7 @@ impl Term<3> for DampingPower {
 
     fn new(values: &[Option<f64>]) -> Self {
         let value = |i: usize| values[i].unwrap_or(f64::NAN);
-        Self {
-            coefficient: value(0),
-            rate_exponent: value(1),
-            overlap_exponent: value(2),
-        }
+        Self { coefficient: value(0), rate_exponent: value(1), overlap_exponent: value(2) }
     }
 
     fn coefficients(&self, _pair: &Pair) -> Result<[f64; 3], LawError> {

@@ -38,10 +38,7 @@ impl Term<1> for DampingTsuji {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            damping_ratio: values[0].unwrap_or(f64::NAN),
-            stiffness: values[1],
-        }
+        Self { damping_ratio: values[0].unwrap_or(f64::NAN), stiffness: values[1] }
     }
 
     fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {

@@ -37,10 +37,7 @@ impl Term<1> for DampingViscoelastic {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            relaxation_time_s: values[0],
-            stiffness: values[1],
-        }
+        Self { relaxation_time_s: values[0], stiffness: values[1] }
     }
 
     fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {

@@ -26,9 +26,7 @@ impl Term<1> for ElasticHertz {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            stiffness: values[0],
-        }
+        Self { stiffness: values[0] }
     }
 
     fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {

@@ -34,9 +34,7 @@ impl Term<5> for ElasticPlasticThornton {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            yield_pressure_pa: values[0].unwrap_or(f64::NAN),
-        }
+        Self { yield_pressure_pa: values[0].unwrap_or(f64::NAN) }
     }
 
     fn coefficients(&self, pair: &Pair) -> Result<[f64; 5], LawError> {
@@ -44,13 +42,7 @@ impl Term<5> for ElasticPlasticThornton {
         let modulus = compliance.recip();
         let yield_overlap = pair.radius_m * (PI * self.yield_pressure_pa / (2.0 * modulus)).powi(2);
         let slope = PI * self.yield_pressure_pa * pair.radius_m;
-        Ok([
-            pair.hertz_stiffness(),
-            yield_overlap,
-            slope,
-            modulus,
-            self.yield_pressure_pa,
-        ])
+        Ok([pair.hertz_stiffness(), yield_overlap, slope, modulus, self.yield_pressure_pa])
     }
 
     fn force(k: &[f64; 5], contact: Closed) -> f64 {

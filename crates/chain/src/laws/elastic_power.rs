@@ -37,10 +37,7 @@ impl Term<2> for ElasticPower {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            stiffness: values[0].unwrap_or(f64::NAN),
-            exponent: values[1].unwrap_or(f64::NAN),
-        }
+        Self { stiffness: values[0].unwrap_or(f64::NAN), exponent: values[1].unwrap_or(f64::NAN) }
     }
 
     fn coefficients(&self, _pair: &Pair) -> Result<[f64; 2], LawError> {

@@ -26,12 +26,7 @@ impl Closed {
     /// A contact that has never been deeper than now.
     #[must_use]
     pub fn new(overlap: f64, rate: f64) -> Self {
-        Self {
-            overlap,
-            root: overlap.sqrt(),
-            rate,
-            largest: overlap,
-        }
+        Self { overlap, root: overlap.sqrt(), rate, largest: overlap }
     }
 }
 
@@ -159,20 +154,14 @@ impl<N: Arithmetic> Split<N> {
     #[inline(always)]
     #[must_use]
     pub fn add_rooted(self, one: N, other: N) -> Self {
-        Self {
-            rooted: one.times_plus(other, self.rooted),
-            ..self
-        }
+        Self { rooted: one.times_plus(other, self.rooted), ..self }
     }
 
     /// With `one` · `other` more.
     #[inline(always)]
     #[must_use]
     pub fn add_plain(self, one: N, other: N) -> Self {
-        Self {
-            plain: one.times_plus(other, self.plain),
-            ..self
-        }
+        Self { plain: one.times_plus(other, self.plain), ..self }
     }
 }
 
@@ -228,13 +217,9 @@ impl Columns {
         let contacts = lanes.first().map_or(0, |columns| columns.contacts);
         let width = lanes.first().map_or(0, |columns| columns.width());
         let rows = (0..width).flat_map(|j| (0..contacts).map(move |c| (j, c)));
-        let values = rows
-            .flat_map(|(j, c)| lanes.iter().map(move |columns| columns.column(j)[c]))
-            .collect();
-        Self {
-            values,
-            contacts: contacts * lanes.len(),
-        }
+        let values =
+            rows.flat_map(|(j, c)| lanes.iter().map(move |columns| columns.column(j)[c])).collect();
+        Self { values, contacts: contacts * lanes.len() }
     }
 
     fn slices<const C: usize>(&self, first: usize, count: usize) -> [&[f64]; C] {
@@ -303,12 +288,8 @@ fn add_forces<T: Term<C>, const C: usize>(
     let (rate, largest) = (&contacts.rate[..n], &contacts.largest[..n]);
     for i in 0..n {
         let row = std::array::from_fn(|j| k[j][i]);
-        let contact = Closed {
-            overlap: overlap[i],
-            root: root[i],
-            rate: rate[i],
-            largest: largest[i],
-        };
+        let contact =
+            Closed { overlap: overlap[i], root: root[i], rate: rate[i], largest: largest[i] };
         force_n[i] += T::force(&row, contact);
     }
 }
@@ -380,10 +361,7 @@ pub struct Row {
 /// The registry row of a law.
 #[must_use]
 pub const fn row<T: Term<C>, const C: usize>() -> Row {
-    Row {
-        info: T::INFO,
-        build: |values| law(T::new(values)),
-    }
+    Row { info: T::INFO, build: |values| law(T::new(values)) }
 }
 
 impl Row {
@@ -393,19 +371,12 @@ impl Row {
     /// An unknown or repeated name, a missing required parameter, or a value
     /// below the least one or not finite.
     pub fn build(&self, given: &[(&str, f64)]) -> Result<Arc<dyn Law>, LawError> {
-        let fail = |what: String| LawError {
-            law: self.info.name,
-            what,
-        };
+        let fail = |what: String| LawError { law: self.info.name, what };
         let known = |name: &str| self.info.parameters.iter().any(|p| p.name == name);
         if let Some((name, _)) = given.iter().find(|(name, _)| !known(name)) {
             return Err(fail(format!("has no parameter `{name}`")));
         }
-        let values = self
-            .info
-            .parameters
-            .iter()
-            .map(|p| value_of(p, given).map_err(fail));
+        let values = self.info.parameters.iter().map(|p| value_of(p, given).map_err(fail));
         Ok((self.build)(&values.collect::<Result<Vec<_>, _>>()?))
     }
 }
@@ -420,10 +391,9 @@ fn value_of(parameter: &Parameter, given: &[(&str, f64)]) -> Result<Option<f64>,
             parameter.unit, parameter.least
         )),
         None => match parameter.source {
-            Source::Required => Err(format!(
-                "needs `{name}` ({}, in {})",
-                parameter.meaning, parameter.unit
-            )),
+            Source::Required => {
+                Err(format!("needs `{name}` ({}, in {})", parameter.meaning, parameter.unit))
+            }
             Source::Materials | Source::Hertz => Ok(None),
             Source::Default(value) => Ok(Some(value)),
         },

@@ -240,9 +240,7 @@ impl Passages {
     /// Looks at the sensor bead's maxima before a time.
     fn look_until(&mut self, time_s: f64) {
         self.seen.0.check(self.sensor.maxima());
-        let later = (self.sensor.maxima())
-            .get(self.seen.0.count..)
-            .unwrap_or_default();
+        let later = (self.sensor.maxima()).get(self.seen.0.count..).unwrap_or_default();
         for peak in later.iter().take_while(|peak| peak.time_s < time_s) {
             self.seen.0.add(*peak);
             let highest = self.incoming.map_or(0.0, |incoming| incoming.value);
@@ -254,8 +252,7 @@ impl Passages {
 
     /// When the search ends, as far as is known.
     fn ends_s(&self) -> Option<f64> {
-        self.best
-            .map(|(incident, wall)| search_ends_s(incident, wall))
+        self.best.map(|(incident, wall)| search_ends_s(incident, wall))
     }
 
     fn incident_and_wall(&self) -> Result<(Maximum, Maximum), PassageError> {
@@ -365,11 +362,8 @@ fn search_ends_s(incident: Option<Maximum>, wall: Maximum) -> f64 {
 impl Signal {
     /// Maxima that could be taken for a pulse's peak.
     fn competing(&self, pulse: Pulse, maxima: &[Maximum], peak: Maximum) -> Vec<Competing> {
-        let one = |&maximum: &Maximum| Competing {
-            pulse,
-            maximum,
-            share: maximum.value / peak.value,
-        };
+        let one =
+            |&maximum: &Maximum| Competing { pulse, maximum, share: maximum.value / peak.value };
         let competes = |other: &Competing| {
             let earlier = other.maximum.time_s < peak.time_s;
             let forerunner = earlier && pulse != Pulse::Reflected;
@@ -392,21 +386,13 @@ fn returns(peak: &Maximum, incident: Maximum, wall: Maximum) -> bool {
 }
 
 fn largest(maxima: &[Maximum], wanted: impl Fn(&Maximum) -> bool) -> Option<Maximum> {
-    let wanted = maxima
-        .iter()
-        .filter(|peak| peak.value > 0.0 && wanted(peak));
-    wanted
-        .copied()
-        .reduce(|best, peak| if peak.value > best.value { peak } else { best })
+    let wanted = maxima.iter().filter(|peak| peak.value > 0.0 && wanted(peak));
+    wanted.copied().reduce(|best, peak| if peak.value > best.value { peak } else { best })
 }
 
 fn reported(maxima: &[Maximum]) -> Vec<Maximum> {
     let most = largest(maxima, |_| true).map_or(0.0, |peak| peak.value);
-    maxima
-        .iter()
-        .copied()
-        .filter(|peak| peak.value >= REPORTED * most && most > 0.0)
-        .collect()
+    maxima.iter().copied().filter(|peak| peak.value >= REPORTED * most && most > 0.0).collect()
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -418,9 +404,8 @@ enum Side {
 /// The time nearest to a peak, on one side, at which its signal passes a level.
 fn crossing(signal: &Signal, peak: Maximum, level: f64, side: Side) -> Option<f64> {
     let stretches = signal.stretches();
-    let home = stretches
-        .partition_point(|stretch| stretch.start_s <= peak.time_s)
-        .checked_sub(1)?;
+    let home =
+        stretches.partition_point(|stretch| stretch.start_s <= peak.time_s).checked_sub(1)?;
     let above = |time: f64, stretch: usize| stretches[stretch].at(time) - level;
     let mut inner = peak.time_s;
     let mut index = home;

@@ -24,10 +24,7 @@ pub struct Shape {
 
 impl Shape {
     /// Of a maximum of which nothing is known.
-    pub const UNKNOWN: Self = Self {
-        sharpness_per_s2: 0.0,
-        interpolation_s: f64::INFINITY,
-    };
+    pub const UNKNOWN: Self = Self { sharpness_per_s2: 0.0, interpolation_s: f64::INFINITY };
 }
 
 /// A signal over one step: its values at five equidistant times.
@@ -49,10 +46,7 @@ impl Stretch {
         let [f0, f1, f2, f3, f4] = self.values;
         // Newton's forward differences.
         let (d1, d2) = (f1 - f0, f2 - 2.0 * f1 + f0);
-        let (d3, d4) = (
-            f3 - 3.0 * f2 + 3.0 * f1 - f0,
-            f4 - 4.0 * f3 + 6.0 * f2 - 4.0 * f1 + f0,
-        );
+        let (d3, d4) = (f3 - 3.0 * f2 + 3.0 * f1 - f0, f4 - 4.0 * f3 + 6.0 * f2 - 4.0 * f1 + f0);
         let (s1, s2, s3) = (s - 1.0, (s - 2.0) / 3.0, (s - 3.0) / 4.0);
         f0 + s * (d1 + 0.5 * s1 * (d2 + s2 * (d3 + s3 * d4)))
     }
@@ -92,11 +86,7 @@ impl Stretch {
         let start = -25.0 * f0 + 48.0 * f1 - 36.0 * f2 + 16.0 * f3 - 3.0 * f4;
         let end = 25.0 * f4 - 48.0 * f3 + 36.0 * f2 - 16.0 * f1 + 3.0 * f0;
         let rough = 3.0 * (f0 - 4.0 * f1 + 6.0 * f2 - 4.0 * f3 + f4).abs();
-        let rough = if rough > ROUGH * f0.abs().max(f4.abs()) {
-            rough
-        } else {
-            0.0
-        };
+        let rough = if rough > ROUGH * f0.abs().max(f4.abs()) { rough } else { 0.0 };
         [
             (start, 12.0 * (f0 - 2.0 * f1 + f2).abs() + rough),
             (end, 12.0 * (f2 - 2.0 * f3 + f4).abs() + rough),
@@ -179,13 +169,7 @@ impl Signal {
         least_n_s: f64,
     ) -> Self {
         let (maxima, shapes) = maxima.into_iter().unzip();
-        Self {
-            stretches,
-            maxima,
-            shapes,
-            least_n_s,
-            ..Self::new(sensor)
-        }
+        Self { stretches, maxima, shapes, least_n_s, ..Self::new(sensor) }
     }
 
     /// Whether a maximum is large enough for a pulse's peak.
@@ -224,9 +208,7 @@ impl Signal {
     /// The signal at a time, 0 where nothing was kept.
     #[must_use]
     pub fn at(&self, time_s: f64) -> f64 {
-        let after = self
-            .stretches
-            .partition_point(|stretch| stretch.start_s <= time_s);
+        let after = self.stretches.partition_point(|stretch| stretch.start_s <= time_s);
         match after.checked_sub(1).map(|i| self.stretches[i]) {
             Some(stretch) if time_s <= stretch.end_s() => stretch.at(time_s),
             _ => 0.0,
@@ -319,10 +301,7 @@ impl Signal {
         let rises = slope > 0.0 || start > value + floor;
         let falls = start_slope <= 0.0 || start < value - floor;
         if rises && falls {
-            self.keep(Maximum {
-                time_s,
-                value: value.max(start),
-            });
+            self.keep(Maximum { time_s, value: value.max(start) });
         }
         let inside = interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch);
         self.keep_inside(stretch, inside);
@@ -344,14 +323,8 @@ impl Observer for Signal {
             return Flow::Finished;
         }
         let values = std::array::from_fn(|i| piece.signal(self.sensor, 0.25 * i as f64));
-        let stretch = Stretch {
-            start_s: piece.start_s(),
-            length_s: piece.step_s(),
-            values,
-        };
-        let size = values
-            .iter()
-            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        let stretch = Stretch { start_s: piece.start_s(), length_s: piece.step_s(), values };
+        let size = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         if size <= LEAST_SHARE * self.largest || size <= piece.system().silence(self.sensor) {
             self.fall_silent();
             return Flow::Continue;
@@ -396,21 +369,10 @@ fn interior_maxima(
 /// rises at its end, as behind an infinite slope that no polynomial follows, there is none.
 fn refined(piece: &Piece<'_>, sensor: Sensor, (low, high): (f64, f64)) -> Option<Maximum> {
     let falling = |theta: f64| -piece.signal_rate(sensor, theta);
-    let low = if falling(low) < 0.0 {
-        low
-    } else {
-        (low - 0.25).max(0.0)
-    };
-    let high = if falling(high) >= 0.0 {
-        high
-    } else {
-        (high + 0.25).min(1.0)
-    };
+    let low = if falling(low) < 0.0 { low } else { (low - 0.25).max(0.0) };
+    let high = if falling(high) >= 0.0 { high } else { (high + 0.25).min(1.0) };
     let theta = bracketed_root(falling, low, high, 1e-12);
-    let maximum = Maximum {
-        time_s: piece.time_s(theta),
-        value: piece.signal(sensor, theta),
-    };
+    let maximum = Maximum { time_s: piece.time_s(theta), value: piece.signal(sensor, theta) };
     // Fixed steps run across jumps, where values decide, not rates.
     let above = |theta: f64| maximum.value > piece.signal(sensor, theta);
     (falling(high) >= 0.0 || (above(low) && above(high))).then_some(maximum)

@@ -42,18 +42,8 @@ impl Tracer {
     #[must_use]
     pub fn new(sensors: Vec<Sensor>, interval_s: f64, budget_interval_s: f64) -> Self {
         let columns = vec![Vec::new(); sensors.len()];
-        let trace = Trace {
-            sensors,
-            columns,
-            ..Trace::default()
-        };
-        Self {
-            interval_s,
-            budget_interval_s,
-            next: 0,
-            trace,
-            full_s: None,
-        }
+        let trace = Trace { sensors, columns, ..Trace::default() };
+        Self { interval_s, budget_interval_s, next: 0, trace, full_s: None }
     }
 
     /// When the trace would have had more than [`Self::MOST_NUMBERS`] numbers, in
@@ -72,16 +62,8 @@ impl Tracer {
     /// Numbers that the trace has once it is sampled until a time, with one
     /// more energy budget.
     fn numbers(&self, until_s: f64) -> f64 {
-        let due = if self.samples() {
-            until_s / self.interval_s
-        } else {
-            0.0
-        };
-        let losses = self
-            .trace
-            .budgets
-            .last()
-            .map_or(0, |it| it.dissipated.len());
+        let due = if self.samples() { until_s / self.interval_s } else { 0.0 };
+        let losses = self.trace.budgets.last().map_or(0, |it| it.dissipated.len());
         let budgets = (self.trace.budgets.len() + 1) * (OF_BUDGET + losses);
         due.max(self.next as f64) * (self.trace.sensors.len() + 1) as f64 + budgets as f64
     }
@@ -116,11 +98,8 @@ impl Observer for Tracer {
             self.sample(piece, time);
             self.next += 1;
         }
-        let due = self
-            .trace
-            .budgets
-            .last()
-            .map_or(0.0, |last| last.time_s + self.budget_interval_s);
+        let due =
+            self.trace.budgets.last().map_or(0.0, |last| last.time_s + self.budget_interval_s);
         if piece.start_s() >= due {
             self.trace.budgets.extend(piece.budget());
         }

@@ -58,10 +58,7 @@ pub(super) struct Columns {
 impl Columns {
     pub(super) fn new(system: &System, slow: &SlowPhase, state: &State) -> Self {
         let friction = slow.friction_coefficient * system.normal_m_s2.abs();
-        let rubs = system
-            .inverse_mass
-            .iter()
-            .map(|&w| if w > 0.0 { friction } else { 0.0 });
+        let rubs = system.inverse_mass.iter().map(|&w| if w > 0.0 { friction } else { 0.0 });
         let balance = balance(system);
         let mut touch = Touch::new(system.contacts());
         for (contact, largest) in touch.largest.iter_mut().enumerate() {
@@ -106,13 +103,7 @@ impl Columns {
 
     /// Forces of all contacts at the bodies' places.
     pub(super) fn feel(&mut self, system: &System, x: &[f64]) {
-        let Self {
-            touch,
-            offset,
-            seen,
-            set,
-            ..
-        } = self;
+        let Self { touch, offset, seen, set, .. } = self;
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
             || meet(touch, offset, x, seen)
@@ -132,11 +123,7 @@ impl Columns {
 
     /// What acts on bodies beside contacts and friction.
     fn push(&mut self, system: &System, x: &[f64]) {
-        let bodies = if system.pendulum_per_s2 > 0.0 {
-            x.len()
-        } else {
-            2
-        };
+        let bodies = if system.pendulum_per_s2 > 0.0 { x.len() } else { 2 };
         let pushed = self.pushed.iter_mut().zip(&self.balance).zip(x);
         let gone = usize::from(self.striker_gone);
         for (i, ((pushed, balance), &x)) in pushed.enumerate().take(bodies).skip(gone) {
@@ -171,9 +158,7 @@ impl Columns {
 /// equilibrium: push, weight, the stop's support.
 fn balance(system: &System) -> Vec<f64> {
     let rest = |body: usize| {
-        let left = body
-            .checked_sub(1)
-            .map_or(0.0, |c| system.static_force_n[c]);
+        let left = body.checked_sub(1).map_or(0.0, |c| system.static_force_n[c]);
         let right = system.static_force_n.get(body).copied().unwrap_or(0.0);
         (left - right) * system.inverse_mass[body]
     };
@@ -191,10 +176,7 @@ fn add_laws(system: &System, set: InstructionSet, touch: &Touch, force: &mut [f6
     for section in system.sections.iter() {
         let part = section.contacts.clone();
         let force = &mut force[part.clone()];
-        for (terms, rate) in [
-            (&section.gated, &touch.rate),
-            (&section.ungated, &touch.across),
-        ] {
+        for (terms, rate) in [(&section.gated, &touch.rate), (&section.ungated, &touch.across)] {
             let seen = Contacts {
                 overlap: &touch.overlap[part.clone()],
                 root: &touch.root[part.clone()],

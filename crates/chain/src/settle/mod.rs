@@ -143,10 +143,9 @@ fn check_settings(slow: &SlowPhase) -> Result<(), SolveError> {
 fn check(system: &System, state: &State, slow: &SlowPhase) -> Result<(), SolveError> {
     check_settings(slow)?;
     let refused = |why: String| Err(SolveError::Refused(why));
-    for (restless, what) in [
-        (system.periodic, "a ring"),
-        (system.motion.is_some(), "a driven chain"),
-    ] {
+    for (restless, what) in
+        [(system.periodic, "a ring"), (system.motion.is_some(), "a driven chain")]
+    {
         if restless {
             return refused(format!(
                 "{what} does not come to rest between shots: only chains with two ends of their own do"

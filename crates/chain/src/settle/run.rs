@@ -65,8 +65,7 @@ impl<'a> Slow<'a> {
             self.columns.kick(kick_s, &mut self.state.velocity_m_s);
             let forces = &self.columns.force[1..=self.system.contacts()];
             seen(self.time_s, self.state, forces);
-            self.columns
-                .drift(self.step_s, &mut self.state.displacement_m);
+            self.columns.drift(self.step_s, &mut self.state.displacement_m);
             self.time_s += self.step_s;
             self.steps += 1;
             kick_s = self.step_s;
@@ -122,13 +121,7 @@ impl<'a> Slow<'a> {
 
     fn fastest(&self) -> Result<usize, SolveError> {
         let (mut fastest, mut most) = (0, 0.0);
-        for (i, (x, v)) in self
-            .state
-            .displacement_m
-            .iter()
-            .zip(&self.columns.v)
-            .enumerate()
-        {
+        for (i, (x, v)) in self.state.displacement_m.iter().zip(&self.columns.v).enumerate() {
             if !(x.is_finite() && v.is_finite()) {
                 return Err(not_finite(self.time_s, i));
             }
@@ -147,10 +140,7 @@ impl<'a> Slow<'a> {
         let (x, v) = (&self.state.displacement_m, &self.columns.v);
         let gap = x[1] - x[0] - self.columns.offset[0];
         if gap >= self.slow.withdrawn_at_m && v[0] <= v[1] {
-            self.withdrawn = Some(Withdrawn {
-                time_s: self.time_s,
-                velocity_m_s: v[0],
-            });
+            self.withdrawn = Some(Withdrawn { time_s: self.time_s, velocity_m_s: v[0] });
             self.state.velocity_m_s[0] = 0.0;
             self.columns.withdraw();
         }

@@ -34,10 +34,7 @@ impl State {
             let apart = gap.map_or(0.0, |gap| system.rest_overlap_m(contact) + gap);
             displacement_m[contact] = displacement_m[contact + 1] - apart;
         }
-        Self {
-            velocity_m_s: vec![0.0; displacement_m.len()],
-            displacement_m,
-        }
+        Self { velocity_m_s: vec![0.0; displacement_m.len()], displacement_m }
     }
 
     /// At the end of a shot of the wave loop.

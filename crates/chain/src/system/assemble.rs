@@ -32,9 +32,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
             None => chain.gravity_m_s2 * chain.incline_rad.cos(),
             Some(_) => 0.0,
         },
-        pendulum_per_s2: chain
-            .suspension_m
-            .map_or(0.0, |length| chain.gravity_m_s2 / length),
+        pendulum_per_s2: chain.suspension_m.map_or(0.0, |length| chain.gravity_m_s2 / length),
         motion: match &chain.start {
             Start::Driven { motion, .. } => Some(motion.clone()),
             _ => None,
@@ -88,17 +86,13 @@ fn sections(
             return Err(ChainError::Layout(what));
         }
         if let Some(c) = (first..=last).find(|&c| section_of[c] != u32::MAX) {
-            return Err(ChainError::Layout(format!(
-                "contact {c} is in two sections"
-            )));
+            return Err(ChainError::Layout(format!("contact {c} is in two sections")));
         }
         section_of[first..=last].fill(columns.len() as u32);
         columns.push(section_columns(section, pairs)?);
     }
     match (0..pairs.len()).find(|&c| section_of[c] == u32::MAX && pairs[c].is_some()) {
-        Some(c) => Err(ChainError::Layout(format!(
-            "contact {c} is in no section: it has no law"
-        ))),
+        Some(c) => Err(ChainError::Layout(format!("contact {c} is in no section: it has no law"))),
         None => Ok((columns, section_of)),
     }
 }
@@ -110,21 +104,11 @@ fn section_columns(
     let contacts = *section.contacts.start()..*section.contacts.end() + 1;
     let (mut gated, mut ungated) = (Vec::new(), Vec::new());
     for law in &section.laws {
-        let term = TermColumns {
-            columns: columns(law, pairs, contacts.clone())?,
-            law: law.clone(),
-        };
-        if law.info().gated {
-            gated.push(term)
-        } else {
-            ungated.push(term)
-        }
+        let term =
+            TermColumns { columns: columns(law, pairs, contacts.clone())?, law: law.clone() };
+        if law.info().gated { gated.push(term) } else { ungated.push(term) }
     }
-    Ok(SectionColumns {
-        contacts,
-        gated,
-        ungated,
-    })
+    Ok(SectionColumns { contacts, gated, ungated })
 }
 
 /// A law's coefficients over contacts; neighbours that join alike are asked once.
@@ -148,8 +132,7 @@ fn columns(
 }
 
 fn coefficients(law: &Arc<dyn Law>, pair: &Pair, contact: usize) -> Result<Vec<f64>, ChainError> {
-    law.coefficients(pair)
-        .map_err(|error| ChainError::Law { contact, error })
+    law.coefficients(pair).map_err(|error| ChainError::Law { contact, error })
 }
 
 /// Masses of bodies 0..=N+1; infinite where nothing moves.
@@ -158,23 +141,14 @@ fn masses(chain: &Chain) -> Vec<f64> {
     let ring = matches!(chain.far, FarEnd::Periodic { .. });
     (0..=last)
         .map(|i| {
-            chain
-                .body(i)
-                .filter(|_| !(ring && i == last))
-                .map_or(f64::INFINITY, |b| b.mass_kg)
+            chain.body(i).filter(|_| !(ring && i == last)).map_or(f64::INFINITY, |b| b.mass_kg)
         })
         .collect()
 }
 
 fn spring(push: &Push) -> Option<Spring> {
     match *push {
-        Push::Spring {
-            force_n,
-            stiffness_n_m,
-        } => Some(Spring {
-            force_n,
-            stiffness_n_m,
-        }),
+        Push::Spring { force_n, stiffness_n_m } => Some(Spring { force_n, stiffness_n_m }),
         _ => None,
     }
 }

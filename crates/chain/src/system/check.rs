@@ -6,33 +6,21 @@ use crate::material::Material;
 pub(super) fn positive(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(()),
-        false => Err(ChainError::Value {
-            what: what(),
-            value,
-            expected: "positive and finite",
-        }),
+        false => Err(ChainError::Value { what: what(), value, expected: "positive and finite" }),
     }
 }
 
 fn finite(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
     match value.is_finite() {
         true => Ok(()),
-        false => Err(ChainError::Value {
-            what: what(),
-            value,
-            expected: "finite",
-        }),
+        false => Err(ChainError::Value { what: what(), value, expected: "finite" }),
     }
 }
 
 fn at_least_zero(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
     match value.is_finite() && value >= 0.0 {
         true => Ok(()),
-        false => Err(ChainError::Value {
-            what: what(),
-            value,
-            expected: "0 or more, and finite",
-        }),
+        false => Err(ChainError::Value { what: what(), value, expected: "0 or more, and finite" }),
     }
 }
 
@@ -45,11 +33,7 @@ fn check_bead(bead: &Bead, name: impl Fn() -> String) -> Result<(), ChainError> 
 /// A rigid material has an infinite Young modulus.
 fn check_material(material: &Material, name: impl Fn() -> String) -> Result<(), ChainError> {
     let refuse = |what: &str, value: f64, expected: &'static str| {
-        Err(ChainError::Value {
-            what: format!("{what} of {}", name()),
-            value,
-            expected,
-        })
+        Err(ChainError::Value { what: format!("{what} of {}", name()), value, expected })
     };
     let (modulus, ratio) = (material.young_modulus_pa, material.poisson_ratio);
     if modulus.is_nan() || modulus <= 0.0 {
@@ -58,14 +42,8 @@ fn check_material(material: &Material, name: impl Fn() -> String) -> Result<(), 
     if !(ratio > -1.0 && ratio < 1.0) {
         return refuse("Poisson ratio", ratio, "between -1 and 1");
     }
-    at_least_zero(
-        || format!("shear viscosity of {}", name()),
-        material.shear_viscosity_pa_s,
-    )?;
-    at_least_zero(
-        || format!("bulk viscosity of {}", name()),
-        material.bulk_viscosity_pa_s,
-    )
+    at_least_zero(|| format!("shear viscosity of {}", name()), material.shear_viscosity_pa_s)?;
+    at_least_zero(|| format!("bulk viscosity of {}", name()), material.bulk_viscosity_pa_s)
 }
 
 pub(super) fn check_values(chain: &Chain) -> Result<(), ChainError> {
@@ -82,42 +60,25 @@ pub(super) fn check_values(chain: &Chain) -> Result<(), ChainError> {
         at_least_zero(|| "stiffness of the push in N/m".into(), stiffness_n_m)?;
     }
     for section in &chain.sections {
-        let name = || {
-            format!(
-                "contacts {} to {}",
-                section.contacts.start(),
-                section.contacts.end()
-            )
-        };
-        section
-            .material
-            .map_or(Ok(()), |material| check_material(&material, name))?;
+        let name =
+            || format!("contacts {} to {}", section.contacts.start(), section.contacts.end());
+        section.material.map_or(Ok(()), |material| check_material(&material, name))?;
     }
     finite(|| "incline in rad".into(), chain.incline_rad)?;
     at_least_zero(|| "gravity in m/s²".into(), chain.gravity_m_s2)?;
-    chain.suspension_m.map_or(Ok(()), |length| {
-        positive(|| "suspension in m".into(), length)
-    })?;
+    chain.suspension_m.map_or(Ok(()), |length| positive(|| "suspension in m".into(), length))?;
     for gap in &chain.gaps {
         contact_exists(chain, gap.contact, "a gap")?;
         at_least_zero(|| format!("gap of contact {} in m", gap.contact), gap.gap_m)?;
     }
     for initial in &chain.initial {
         if !(1..=chain.beads.len()).contains(&initial.bead) {
-            let what = format!(
-                "bead {} has an initial state but is not in the chain",
-                initial.bead
-            );
+            let what =
+                format!("bead {} has an initial state but is not in the chain", initial.bead);
             return Err(ChainError::Layout(what));
         }
-        finite(
-            || format!("displacement of bead {}", initial.bead),
-            initial.displacement_m,
-        )?;
-        finite(
-            || format!("velocity of bead {}", initial.bead),
-            initial.velocity_m_s,
-        )?;
+        finite(|| format!("displacement of bead {}", initial.bead), initial.displacement_m)?;
+        finite(|| format!("velocity of bead {}", initial.bead), initial.velocity_m_s)?;
     }
     Ok(())
 }
@@ -135,9 +96,7 @@ pub(super) fn contact_exists(chain: &Chain, contact: usize, who: &str) -> Result
 fn check_start(chain: &Chain) -> Result<(), ChainError> {
     let periodic = matches!(chain.far, FarEnd::Periodic { .. });
     if periodic && !matches!(chain.start, Start::Free) {
-        return Err(ChainError::Layout(
-            "a ring has no end to strike or drive".into(),
-        ));
+        return Err(ChainError::Layout("a ring has no end to strike or drive".into()));
     }
     match &chain.start {
         Start::Striker { bead, speed_m_s } => {
@@ -146,9 +105,7 @@ fn check_start(chain: &Chain) -> Result<(), ChainError> {
         }
         Start::Driven { bead, motion } => {
             positive(|| "radius of the driven end".into(), bead.radius_m)?;
-            motion
-                .check()
-                .map_err(|what| ChainError::Layout(format!("driven end: {what}")))
+            motion.check().map_err(|what| ChainError::Layout(format!("driven end: {what}")))
         }
         Start::Free => Ok(()),
     }
@@ -159,9 +116,7 @@ fn check_far(far: &FarEnd) -> Result<(), ChainError> {
         FarEnd::HalfBead { radius_m, .. } => {
             positive(|| "radius of the half-bead".into(), radius_m)
         }
-        FarEnd::Stop {
-            radius_m, mass_kg, ..
-        } => {
+        FarEnd::Stop { radius_m, mass_kg, .. } => {
             positive(|| "radius of the half-bead".into(), radius_m)?;
             positive(|| "mass of the stop".into(), mass_kg)
         }

@@ -14,10 +14,7 @@ impl System {
             return 0.0;
         };
         let at = contact - section.contacts.start;
-        section
-            .terms()
-            .map(|term| term.law.force(&term.columns, at, closed))
-            .sum()
+        section.terms().map(|term| term.law.force(&term.columns, at, closed)).sum()
     }
 
     /// Sum of the terms that act across a gap, in N.
@@ -26,11 +23,7 @@ impl System {
             return 0.0;
         };
         let at = contact - section.contacts.start;
-        section
-            .ungated
-            .iter()
-            .map(|term| term.law.force(&term.columns, at, closed))
-            .sum()
+        section.ungated.iter().map(|term| term.law.force(&term.columns, at, closed)).sum()
     }
 
     /// Energy in J that all terms of a contact hold at an overlap never exceeded before.
@@ -39,9 +32,6 @@ impl System {
             return 0.0;
         };
         let at = contact - section.contacts.start;
-        section
-            .terms()
-            .map(|term| term.law.energy(&term.columns, at, overlap, overlap))
-            .sum()
+        section.terms().map(|term| term.law.energy(&term.columns, at, overlap, overlap)).sum()
     }
 }

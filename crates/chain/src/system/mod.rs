@@ -148,9 +148,7 @@ impl System {
     /// Whether a contact has a body on both sides.
     #[must_use]
     pub fn has_contact(&self, contact: usize) -> bool {
-        self.offset_m
-            .get(contact)
-            .is_some_and(|offset| offset.is_finite())
+        self.offset_m.get(contact).is_some_and(|offset| offset.is_finite())
     }
 
     /// Whether the chain has a place for a sensor.
@@ -255,9 +253,6 @@ impl System {
             && !self.periodic
             && self.motion.is_none()
             && self.static_force_n.iter().all(|&force| force == 0.0)
-            && self
-                .sections
-                .iter()
-                .all(|section| section.ungated.is_empty())
+            && self.sections.iter().all(|section| section.ungated.is_empty())
     }
 }

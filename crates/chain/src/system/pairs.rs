@@ -11,10 +11,7 @@ impl Chain {
     #[must_use]
     pub fn pair(&self, contact: usize) -> Option<Pair> {
         let (left, right) = (self.body(contact)?, self.body(contact + 1)?);
-        let section = self
-            .sections
-            .iter()
-            .find(|section| section.contacts.contains(&contact));
+        let section = self.sections.iter().find(|section| section.contacts.contains(&contact));
         let material = section.and_then(|section| section.material);
         Some(Pair {
             left: material.unwrap_or(left.material),
@@ -36,10 +33,7 @@ impl Chain {
     fn near_body(&self) -> Option<Bead> {
         match self.start {
             Start::Striker { bead, .. } => Some(bead),
-            Start::Driven { bead, .. } => Some(Bead {
-                mass_kg: ENDLESS,
-                ..bead
-            }),
+            Start::Driven { bead, .. } => Some(Bead { mass_kg: ENDLESS, ..bead }),
             Start::Free => None,
         }
     }
@@ -48,20 +42,12 @@ impl Chain {
         let (radius_m, mass_kg, material) = match self.far {
             FarEnd::HalfBead { radius_m, material } => (radius_m, ENDLESS, material),
             FarEnd::Plane { material } => (ENDLESS, ENDLESS, material),
-            FarEnd::Stop {
-                radius_m,
-                material,
-                mass_kg,
-            } => (radius_m, mass_kg, material),
+            FarEnd::Stop { radius_m, material, mass_kg } => (radius_m, mass_kg, material),
             FarEnd::PlaneStop { material, mass_kg } => (ENDLESS, mass_kg, material),
             FarEnd::Periodic { .. } => return self.beads.first().copied(),
             FarEnd::Free => return None,
         };
-        Some(Bead {
-            radius_m,
-            mass_kg,
-            material,
-        })
+        Some(Bead { radius_m, mass_kg, material })
     }
 }
 

@@ -53,10 +53,8 @@ impl System {
     fn spring_at(&self, x_m: f64) -> Option<Spring> {
         let spring = self.spring?;
         let force_n = spring.force_n - spring.stiffness_n_m * x_m;
-        (force_n > 0.0 || spring.force_n == 0.0).then_some(Spring {
-            force_n: force_n.max(0.0),
-            ..spring
-        })
+        (force_n > 0.0 || spring.force_n == 0.0)
+            .then_some(Spring { force_n: force_n.max(0.0), ..spring })
     }
 
     fn rest_in(&mut self, state: &State, spring: Option<Spring>) {
@@ -86,9 +84,9 @@ impl System {
             ));
         }
         match state.first_not_finite() {
-            Some(body) => fail(format!(
-                "the place or the speed of body {body} in the state is not finite"
-            )),
+            Some(body) => {
+                fail(format!("the place or the speed of body {body} in the state is not finite"))
+            }
             None => Ok(()),
         }
     }

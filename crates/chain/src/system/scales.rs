@@ -9,11 +9,7 @@ use crate::material::Pair;
 pub(super) fn scales(system: &System, kinds: &[(usize, Pair)]) -> Scales {
     let speed = characteristic_speed(system);
     let time = shortest_time(system, kinds, speed);
-    let time_s = if time.is_finite() && time > 0.0 {
-        time
-    } else {
-        1.0
-    };
+    let time_s = if time.is_finite() && time > 0.0 { time } else { 1.0 };
     let lightest = system.mass_kg.iter().copied().fold(f64::INFINITY, f64::min);
     let static_force = system.static_force_n.iter().copied().fold(0.0, f64::max);
     let silent_force_n = (1e-9 * lightest * speed / time_s).max(1e-13 * static_force);
@@ -72,36 +68,20 @@ fn crossing_s(system: &System, kinds: &[(usize, Pair)], least_n_s: f64) -> f64 {
 }
 
 fn characteristic_speed(system: &System) -> f64 {
-    let driven = system
-        .motion
-        .as_ref()
-        .map_or(0.0, |motion| motion.largest_speed_m_s());
-    let moving = system
-        .velocity_m_s
-        .iter()
-        .fold(driven, |most, v| most.max(v.abs()));
+    let driven = system.motion.as_ref().map_or(0.0, |motion| motion.largest_speed_m_s());
+    let moving = system.velocity_m_s.iter().fold(driven, |most, v| most.max(v.abs()));
     if moving > 0.0 {
         return moving;
     }
     // Only displaced: the speed that the largest stored energy can give.
-    let displaced = system
-        .displacement_m
-        .iter()
-        .fold(0.0_f64, |most, x| most.max(x.abs()));
+    let displaced = system.displacement_m.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let swinging = displaced * system.pendulum_per_s2.sqrt();
     let stored = (0..system.contacts())
         .map(|c| system.stored_energy(c, system.offset_m[c].max(0.0) + displaced))
         .fold(0.0_f64, f64::max);
     let lightest = system.mass_kg.iter().copied().fold(f64::INFINITY, f64::min);
-    let released = if system.pendulum_per_s2 > 0.0 {
-        0.0
-    } else {
-        (2.0 * stored / lightest).sqrt()
-    };
+    let released =
+        if system.pendulum_per_s2 > 0.0 { 0.0 } else { (2.0 * stored / lightest).sqrt() };
     let speed = swinging.max(released);
-    if speed.is_finite() && speed > 0.0 {
-        speed
-    } else {
-        1.0
-    }
+    if speed.is_finite() && speed > 0.0 { speed } else { 1.0 }
 }

@@ -23,11 +23,7 @@ impl System {
         StaticContact {
             overlap_m: overlap,
             force_n: self.static_force_n[contact],
-            stiffness_n_m: if overlap > 0.0 {
-                stiffness(self, contact, overlap)
-            } else {
-                0.0
-            },
+            stiffness_n_m: if overlap > 0.0 { stiffness(self, contact, overlap) } else { 0.0 },
         }
     }
 }
@@ -71,11 +67,7 @@ fn invert(rising: impl Fn(f64) -> f64, level: f64, width: f64) -> Option<f64> {
         if middle <= low || middle >= high || high - low <= width * high {
             return Some(high);
         }
-        if rising(middle) < level {
-            low = middle
-        } else {
-            high = middle
-        }
+        if rising(middle) < level { low = middle } else { high = middle }
     }
 }
 
@@ -115,9 +107,5 @@ pub(super) fn shorter_time(
     };
     let shorter = turning.min(known_s);
     let preloaded = system.static_contact(contact).stiffness_n_m;
-    if preloaded > 0.0 {
-        shorter.min((mass_kg / preloaded).sqrt())
-    } else {
-        shorter
-    }
+    if preloaded > 0.0 { shorter.min((mass_kg / preloaded).sqrt()) } else { shorter }
 }

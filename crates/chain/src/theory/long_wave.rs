@@ -34,10 +34,7 @@ pub struct LongWave {
 
 impl LongWave {
     /// Nesterenko's theory for Hertz contacts.
-    pub const HERTZ: Self = Self {
-        form: LongWaveForm::Displacement,
-        exponent: 1.5,
-    };
+    pub const HERTZ: Self = Self { form: LongWaveForm::Displacement, exponent: 1.5 };
 
     /// m V² / (k δ_mⁿ⁻¹): 2/(n+1), or (n+1)/(2n) in the strain form.
     pub fn speed_squared(&self) -> f64 {

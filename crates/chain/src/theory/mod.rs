@@ -53,11 +53,7 @@ fn require_positive(quantity: &str, value: f64) -> Result<(), ChainError> {
 }
 
 fn out_of_range(quantity: &str, value: f64, expected: &'static str) -> ChainError {
-    ChainError::Value {
-        what: quantity.to_owned(),
-        value,
-        expected,
-    }
+    ChainError::Value { what: quantity.to_owned(), value, expected }
 }
 
 fn not_converged(computation: &str, error: f64) -> ChainError {

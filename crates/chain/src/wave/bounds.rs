@@ -16,11 +16,7 @@ impl Piece<'_> {
         let kinetic = |body: usize| {
             let mass = system.mass_kg[body];
             let speed = self.body(body, theta).1;
-            if mass.is_finite() {
-                0.5 * mass * speed * speed
-            } else {
-                0.0
-            }
+            if mass.is_finite() { 0.5 * mass * speed * speed } else { 0.0 }
         };
         let stored = |contact: usize| match self.overlap(contact, theta).0 {
             overlap if overlap > 0.0 => system.stored_energy(contact, overlap),

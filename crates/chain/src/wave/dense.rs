@@ -168,10 +168,7 @@ impl Piece<'_> {
     pub fn overlap(&self, contact: usize, theta: f64) -> (f64, f64) {
         let (left, before) = self.body(contact, theta);
         let (right, after) = self.body(contact + 1, theta);
-        (
-            self.system.offset_m[contact] - (right - left),
-            before - after,
-        )
+        (self.system.offset_m[contact] - (right - left), before - after)
     }
 
     /// Dynamic force of a contact in N: its force less the static one.
@@ -183,19 +180,13 @@ impl Piece<'_> {
 
     /// Force before any cut of a contact taken as closed, in N.
     pub(super) fn closed_force(&self, contact: usize, overlap: f64, rate: f64) -> f64 {
-        self.system
-            .unclipped_force(contact, self.closed(contact, overlap, rate))
+        self.system.unclipped_force(contact, self.closed(contact, overlap, rate))
     }
 
     fn closed(&self, contact: usize, overlap: f64, rate: f64) -> Closed {
         let overlap = if overlap > FLUSH { overlap } else { 0.0 };
         let largest = self.state.largest[contact].max(overlap);
-        Closed {
-            overlap,
-            root: overlap.sqrt(),
-            rate,
-            largest,
-        }
+        Closed { overlap, root: overlap.sqrt(), rate, largest }
     }
 
     /// Total force in N at an overlap and a rate under this step's mode.
@@ -227,15 +218,10 @@ impl Piece<'_> {
             return self.acceleration(1, theta);
         }
         let side = |contact: Option<usize>| {
-            contact
-                .filter(|&c| c < last)
-                .map_or(0.0, |c| self.force(c, theta))
+            contact.filter(|&c| c < last).map_or(0.0, |c| self.force(c, theta))
         };
-        let before = if system.periodic && body == 1 {
-            Some(last - 1)
-        } else {
-            body.checked_sub(1)
-        };
+        let before =
+            if system.periodic && body == 1 { Some(last - 1) } else { body.checked_sub(1) };
         let a = (side(before) - side(Some(body))) * system.inverse_mass[body];
         a + system.pushed(body, self.body(body, theta).0)
     }
@@ -299,9 +285,7 @@ impl Piece<'_> {
         let system = self.system;
         let bead = |n: usize| {
             (1..=system.beads()).contains(&n)
-                && [self.before(n), n, n + 1]
-                    .into_iter()
-                    .any(|i| self.is_awake(i))
+                && [self.before(n), n, n + 1].into_iter().any(|i| self.is_awake(i))
         };
         match sensor {
             Sensor::Bead(n) => bead(n),
@@ -315,8 +299,5 @@ impl Piece<'_> {
 }
 
 pub(super) fn polynomial(coefficients: &[f64; DEGREE], theta: f64) -> f64 {
-    coefficients
-        .iter()
-        .rev()
-        .fold(0.0, |sum, c| theta * (sum + c))
+    coefficients.iter().rev().fold(0.0, |sum, c| theta * (sum + c))
 }

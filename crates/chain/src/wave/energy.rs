@@ -103,19 +103,14 @@ pub(super) fn rest_energy(system: &System) -> f64 {
 pub(super) fn kinetic(system: &System, state: &State) -> f64 {
     let beads = system.bodies() - 1;
     let moving = system.mass_kg[..beads].iter().zip(&state.v);
-    moving
-        .filter(|(mass, _)| mass.is_finite())
-        .map(|(mass, v)| 0.5 * mass * v * v)
-        .sum()
+    moving.filter(|(mass, _)| mass.is_finite()).map(|(mass, v)| 0.5 * mass * v * v).sum()
 }
 
 pub(super) fn gravity(system: &System, state: &State) -> f64 {
     let beads = system.bodies() - 1;
     let first = usize::from(!system.has_striker);
     let bodies = system.mass_kg[..beads].iter().zip(&state.x).skip(first);
-    bodies
-        .map(|(mass, x)| mass * x * (0.5 * system.pendulum_per_s2 * x - system.slope_m_s2))
-        .sum()
+    bodies.map(|(mass, x)| mass * x * (0.5 * system.pendulum_per_s2 * x - system.slope_m_s2)).sum()
 }
 
 pub(super) fn preload(system: &System, state: &State) -> f64 {

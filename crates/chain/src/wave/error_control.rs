@@ -24,11 +24,7 @@ impl Wave<'_> {
             Some(body) => Err(self.not_finite(body)),
             None => {
                 let contact = near.min(self.system.contacts() - 1);
-                Err(SolveError::StepTooSmall {
-                    time_s,
-                    step_s: h,
-                    contact,
-                })
+                Err(SolveError::StepTooSmall { time_s, step_s: h, contact })
             }
         }
     }
@@ -50,9 +46,7 @@ impl Wave<'_> {
 
     pub(super) fn first_not_finite(&self) -> Option<usize> {
         let bodies = self.moving();
-        bodies
-            .into_iter()
-            .find(|&i| !(self.x[i].is_finite() && self.v[i].is_finite()))
+        bodies.into_iter().find(|&i| !(self.x[i].is_finite() && self.v[i].is_finite()))
     }
 
     pub(super) fn not_finite(&self, body: usize) -> SolveError {
@@ -77,10 +71,7 @@ impl Wave<'_> {
         let length = speed * self.system.scales().time_s;
         let bodies = self.owned();
         let (error, body) = error_norm(bodies, h, weights, &self.a, (speed, length));
-        let work = self
-            .meter
-            .as_ref()
-            .map_or(0.0, |meter| meter.error(h, &weights[0]));
+        let work = self.meter.as_ref().map_or(0.0, |meter| meter.error(h, &weights[0]));
         (if work > error { work } else { error }, body)
     }
 
@@ -90,10 +81,7 @@ impl Wave<'_> {
         let contacts = bodies.start..bodies.end - 1;
         let v = &self.state.v[contacts.start..=contacts.end];
         let touching = &self.state.touching[contacts];
-        let rates = v
-            .windows(2)
-            .zip(touching)
-            .map(|(v, on)| on * (v[0] - v[1]).abs());
+        let rates = v.windows(2).zip(touching).map(|(v, on)| on * (v[0] - v[1]).abs());
         rates.fold(LEAST_SCALE * self.system.scales().speed_m_s, f64::max)
     }
 }

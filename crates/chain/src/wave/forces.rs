@@ -111,9 +111,7 @@ impl Pass {
     /// Whether any gate disagrees with the overlap of the last pass: closed
     /// across a gap or open at an overlap.
     pub(super) fn disagrees(&self, contacts: Range<usize>) -> bool {
-        let gates = self.gap[contacts.clone()]
-            .iter()
-            .zip(&self.touching[contacts]);
+        let gates = self.gap[contacts.clone()].iter().zip(&self.touching[contacts]);
         let wrong = gates.map(|(gap, touching)| u32::from(gap * (2.0 * touching - 1.0) < 0.0));
         wrong.sum::<u32>() > 0
     }
@@ -156,13 +154,11 @@ impl Pass {
             };
             for term in &section.gated {
                 let force = &mut self.closed_force[part.clone()];
-                term.law
-                    .add_forces(self.set, &term.columns, first, seen, force);
+                term.law.add_forces(self.set, &term.columns, first, seen, force);
             }
             for term in &section.ungated {
                 let force = &mut self.across[part.clone()];
-                term.law
-                    .add_forces(self.set, &term.columns, first, seen, force);
+                term.law.add_forces(self.set, &term.columns, first, seen, force);
             }
         }
     }
@@ -205,10 +201,8 @@ impl Pass {
         if system.periodic {
             self.dynamic[1] = self.dynamic[last];
         }
-        let (left, right) = (
-            &self.dynamic[bodies.clone()],
-            &self.dynamic[bodies.start + 1..=bodies.end],
-        );
+        let (left, right) =
+            (&self.dynamic[bodies.clone()], &self.dynamic[bodies.start + 1..=bodies.end]);
         let inverse_mass = &system.inverse_mass[bodies.clone()];
         let out = &mut a[bodies.clone()];
         for i in 0..out.len() {
@@ -222,11 +216,7 @@ impl Pass {
 }
 
 fn push_ends(system: &System, bodies: Range<usize>, x: &[f64], a: &mut [f64]) {
-    let last = if system.pendulum_per_s2 > 0.0 {
-        bodies.end
-    } else {
-        2
-    };
+    let last = if system.pendulum_per_s2 > 0.0 { bodies.end } else { 2 };
     for i in bodies.start..bodies.end.min(last) {
         a[i] += system.pushed(i, x[i]);
     }

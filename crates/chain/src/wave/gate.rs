@@ -101,10 +101,8 @@ impl Watch {
             Change::Overlap(_) => pass.gap[c].abs(),
             Change::Force(_) | Change::Turn => pass.gap[c].max(0.0),
         };
-        let closed = Closed {
-            largest: pass.largest[c].max(depth),
-            ..Closed::new(depth, pass.rate[c])
-        };
+        let closed =
+            Closed { largest: pass.largest[c].max(depth), ..Closed::new(depth, pass.rate[c]) };
         let force = match change {
             Change::Force(_) => pass.uncut(c),
             _ => system.unclipped_force(c, closed),
@@ -139,12 +137,7 @@ impl Watch {
         let at_start = theta < AT_START.max(LEAST_STEP * self.time_s / piece.step_s);
         let spent = change == Change::Turn || self.changed_at(contact, state.time_s) >= 2;
         let stays = (at_start && spent) || theta > 1.0 - AT_END;
-        (!stays).then_some(Event {
-            contact,
-            theta,
-            at_start,
-            change,
-        })
+        (!stays).then_some(Event { contact, theta, at_start, change })
     }
 
     fn changed_at(&self, contact: usize, time_s: f64) -> u8 {
@@ -186,13 +179,11 @@ impl Watch {
         for contact in contacts {
             let found = self.change(system, state, pass, contact);
             let aimed = aimed.filter(|event| event.contact == contact && found.is_none());
-            let landed = aimed
-                .map(|event| event.change)
-                .filter(|&change| match change {
-                    Change::Overlap(_) => self.has_landed(system, state, pass, contact, change),
-                    Change::Force(_) => true,
-                    Change::Turn => false,
-                });
+            let landed = aimed.map(|event| event.change).filter(|&change| match change {
+                Change::Overlap(_) => self.has_landed(system, state, pass, contact, change),
+                Change::Force(_) => true,
+                Change::Turn => false,
+            });
             if let Some(Change::Overlap(mode) | Change::Force(mode)) = found.or(landed) {
                 self.set(state, contact, mode);
                 changed = true;

@@ -39,11 +39,8 @@ impl Meter {
             rest_elastic_j: rest_energy(system),
             start_plastic_j: Vec::new(),
         };
-        meter.start_plastic_j = meter
-            .laws
-            .iter()
-            .map(|law| stored(system, state, Some(law)))
-            .collect();
+        meter.start_plastic_j =
+            meter.laws.iter().map(|law| stored(system, state, Some(law))).collect();
         meter.start_j = meter.budget(system, state, None).accounted_j();
         meter.most_j = meter.start_j.abs();
         meter
@@ -106,9 +103,7 @@ impl Meter {
             let rows = weights.iter().zip(&self.powers_w);
             rows.map(|(weight, powers)| weight * powers[slot]).sum()
         };
-        slots
-            .map(|slot| (step_s * error(slot) / self.most_j).abs())
-            .fold(0.0, f64::max)
+        slots.map(|slot| (step_s * error(slot) / self.most_j).abs()).fold(0.0, f64::max)
     }
 
     /// The last stage of a step is the first of the next.
@@ -133,10 +128,7 @@ impl Meter {
         let dissipated = self.laws.iter().enumerate().map(|(slot, law)| {
             let start = self.start_plastic_j.get(slot).copied().unwrap_or(0.0);
             let kept = stored(system, state, Some(law)) - start;
-            Dissipated {
-                law,
-                energy_j: work_j[slot] - kept,
-            }
+            Dissipated { law, energy_j: work_j[slot] - kept }
         });
         Budget {
             time_s: state.time_s,
@@ -199,10 +191,8 @@ fn term_power(
         force,
     );
     let (touching, rate) = (&pass.touching[contacts.clone()], &pass.rate[contacts]);
-    let acting = force
-        .iter()
-        .zip(touching)
-        .map(|(f, on)| if gated && *on == 0.0 { 0.0 } else { *f });
+    let acting =
+        force.iter().zip(touching).map(|(f, on)| if gated && *on == 0.0 { 0.0 } else { *f });
     acting.zip(rate).map(|(f, rate)| f * rate).sum()
 }
 
@@ -215,11 +205,7 @@ fn cut_power(system: &System, pass: &Pass, contacts: Range<usize>) -> f64 {
         .filter(|&c| system.has_contact(c))
         .map(|c| {
             let acting = pass.dynamic[c + 1] + system.static_force_n[c];
-            let gated = if pass.touching[c] > 0.0 {
-                pass.closed_force[c]
-            } else {
-                0.0
-            };
+            let gated = if pass.touching[c] > 0.0 { pass.closed_force[c] } else { 0.0 };
             (acting - gated - pass.across[c]) * pass.rate[c]
         })
         .sum()

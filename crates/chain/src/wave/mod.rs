@@ -66,9 +66,7 @@ impl Method for DormandPrince {
         dormand_prince::dormand_prince()
     }
     fn control(&self) -> Control {
-        Control::Adaptive {
-            tolerance: self.tolerance,
-        }
+        Control::Adaptive { tolerance: self.tolerance }
     }
     fn name(&self) -> &'static str {
         "Dormand–Prince 5(4), adaptive, contact changes located"
@@ -87,9 +85,7 @@ impl Method for Rk4 {
         rk4::rk4()
     }
     fn control(&self) -> Control {
-        Control::Fixed {
-            step_s: self.step_s,
-        }
+        Control::Fixed { step_s: self.step_s }
     }
     fn name(&self) -> &'static str {
         "classical Runge–Kutta 4, fixed step"
@@ -108,9 +104,7 @@ impl Method for Verlet {
         verlet::verlet()
     }
     fn control(&self) -> Control {
-        Control::Fixed {
-            step_s: self.step_s,
-        }
+        Control::Fixed { step_s: self.step_s }
     }
     fn name(&self) -> &'static str {
         "velocity Verlet, fixed step"

@@ -162,13 +162,8 @@ pub enum SolveError {
 }
 
 /// Sizes of times that have a name.
-const PREFIXES: [(f64, &str); 5] = [
-    (1.0, "s"),
-    (1e-3, "ms"),
-    (1e-6, "µs"),
-    (1e-9, "ns"),
-    (1e-12, "ps"),
-];
+const PREFIXES: [(f64, &str); 5] =
+    [(1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"), (1e-12, "ps")];
 
 /// A time in s for people: five digits, with a prefix.
 fn time(time_s: f64) -> String {

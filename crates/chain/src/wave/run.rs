@@ -73,27 +73,16 @@ impl<'a> Wave<'a> {
             Control::Adaptive { tolerance } => tolerance,
             Control::Fixed { .. } => 0.0,
         };
-        let window = Window::new(
-            system,
-            &state,
-            (table.stages(), tolerance),
-            limits.whole_chain,
-        );
+        let window = Window::new(system, &state, (table.stages(), tolerance), limits.whole_chain);
         let adaptive = matches!(control, Control::Adaptive { .. });
         let two_clocks = adaptive && window.sleeps_again() && !system.has_memory;
         Self {
             window,
             slow: Slow::new(system, table.stages(), two_clocks),
-            gates: if adaptive {
-                Gates::Frozen
-            } else {
-                Gates::Instant
-            },
+            gates: if adaptive { Gates::Frozen } else { Gates::Instant },
             pass: Pass::new(system),
             watch: Watch::new(system, tolerance),
-            meter: limits
-                .budget
-                .then(|| Meter::new(system, &state, table.stages())),
+            meter: limits.budget.then(|| Meter::new(system, &state, table.stages())),
             a: vec![bodies(); table.stages()],
             x: state.x.clone(),
             v: state.v.clone(),
@@ -188,16 +177,8 @@ impl<'a> Wave<'a> {
     /// end's motion is not smooth.
     pub(super) fn longest(&self) -> f64 {
         let time = self.state.time_s;
-        let next = self
-            .system
-            .motion
-            .as_ref()
-            .map_or(f64::INFINITY, |m| m.next_break(time));
-        let smooth = self
-            .system
-            .motion
-            .as_ref()
-            .map_or(f64::INFINITY, |m| m.longest_step_s());
+        let next = self.system.motion.as_ref().map_or(f64::INFINITY, |m| m.next_break(time));
+        let smooth = self.system.motion.as_ref().map_or(f64::INFINITY, |m| m.longest_step_s());
         let slow = match self.slow.active {
             true => self.slow.end_s() - time,
             false => f64::INFINITY,
@@ -243,11 +224,8 @@ impl<'a> Wave<'a> {
                     let grown = h * (0.9 * error.powf(-self.table.order.recip())).clamp(0.2, 5.0);
                     // A step cut short by an event or the end says little
                     // about the step after it.
-                    self.proposed_s = if h < self.proposed_s {
-                        self.proposed_s.max(grown)
-                    } else {
-                        grown
-                    };
+                    self.proposed_s =
+                        if h < self.proposed_s { self.proposed_s.max(grown) } else { grown };
                     return Ok(h);
                 }
                 Some(event) if event.at_start => {
@@ -294,8 +272,7 @@ impl<'a> Wave<'a> {
 
     /// The first change of a contact that must end the step.
     fn first_change(&self, h: f64) -> Option<Event> {
-        self.watch
-            .first(&self.piece(h), &self.pass, self.contacts())
+        self.watch.first(&self.piece(h), &self.pass, self.contacts())
     }
 
     /// Makes the end of the step the new state.
@@ -304,12 +281,9 @@ impl<'a> Wave<'a> {
         let awake = self.window.bodies.clone();
         self.work.steps += 1;
         if let Some(meter) = &mut self.meter {
-            let moving = bodies
-                .clone()
-                .filter(|&i| self.system.mass_kg[i].is_finite());
-            let kinetic = moving
-                .map(|i| 0.5 * self.system.mass_kg[i] * self.v[i] * self.v[i])
-                .sum();
+            let moving = bodies.clone().filter(|&i| self.system.mass_kg[i].is_finite());
+            let kinetic =
+                moving.map(|i| 0.5 * self.system.mass_kg[i] * self.v[i] * self.v[i]).sum();
             meter.finish_step(h, self.table.end().0, kinetic);
             meter.carry_over();
         }
@@ -326,10 +300,8 @@ impl<'a> Wave<'a> {
         let finished = self.finish_slow();
         match self.slow.active {
             true => {
-                let sides = [
-                    self.slow.quick.start == 0,
-                    self.slow.quick.end == self.system.bodies(),
-                ];
+                let sides =
+                    [self.slow.quick.start == 0, self.slow.quick.end == self.system.bodies()];
                 self.window.keep_up(self.system, &mut self.state, sides);
             }
             false => self.window.follow(self.system, &mut self.state),
@@ -353,19 +325,14 @@ impl<'a> Wave<'a> {
 
     fn settle_gates(&mut self) -> bool {
         let (contacts, aimed) = (self.contacts(), self.aimed);
-        self.watch
-            .settle(self.system, &mut self.state, &self.pass, contacts, aimed)
+        self.watch.settle(self.system, &mut self.state, &self.pass, contacts, aimed)
     }
 
     /// With fixed steps modes only report to the energy budget what touches.
     fn follow_gates(&mut self) -> bool {
         for contact in self.contacts() {
             let touches = self.state.overlap(self.system, contact) >= 0.0;
-            let mode = if touches {
-                super::state::Mode::Closed
-            } else {
-                super::state::Mode::Open
-            };
+            let mode = if touches { super::state::Mode::Closed } else { super::state::Mode::Open };
             self.state.set(contact, mode);
         }
         false
@@ -382,8 +349,7 @@ impl<'a> Wave<'a> {
 
     fn outcome(mut self, finished: bool) -> Outcome {
         let time_s = self.state.time_s;
-        self.slow
-            .bring_to(self.system, self.table, &mut self.state, time_s);
+        self.slow.bring_to(self.system, self.table, &mut self.state, time_s);
         self.window.wake_all(&mut self.state);
         let slow = self.slow.active.then_some(&self.slow);
         let pending = slow.map(|slow| (slow.step_s, slow.weights(self.table, time_s)));

@@ -15,10 +15,7 @@ pub(super) fn check(control: Control, limits: &Limits, system: &System) -> Resul
     }
     match control {
         Control::Adaptive { tolerance } if tolerance < LEAST_TOLERANCE => {
-            Err(SolveError::TooTight {
-                tolerance,
-                least: LEAST_TOLERANCE,
-            })
+            Err(SolveError::TooTight { tolerance, least: LEAST_TOLERANCE })
         }
         Control::Adaptive { tolerance } if tolerance.is_nan() || tolerance >= 1.0 => {
             setting("tolerance (below 1)", tolerance)
@@ -27,10 +24,7 @@ pub(super) fn check(control: Control, limits: &Limits, system: &System) -> Resul
             setting("step in s", step_s)
         }
         Control::Fixed { step_s } if step_s > system.scales().time_s => {
-            Err(SolveError::StepTooLong {
-                step_s,
-                contact_time_s: system.scales().time_s,
-            })
+            Err(SolveError::StepTooLong { step_s, contact_time_s: system.scales().time_s })
         }
         _ => Ok(()),
     }
@@ -40,7 +34,5 @@ pub(super) fn check(control: Control, limits: &Limits, system: &System) -> Resul
 /// thousand, and ten million for the shortest shot.
 pub(super) fn most_passes(system: &System, limits: &Limits) -> u64 {
     let contact_times = limits.duration_s / system.scales().time_s;
-    limits
-        .force_passes
-        .unwrap_or(10_000_000_u64.saturating_add((1e4 * contact_times) as u64))
+    limits.force_passes.unwrap_or(10_000_000_u64.saturating_add((1e4 * contact_times) as u64))
 }

@@ -47,13 +47,11 @@ impl Table {
                 weights
             })
             .collect();
-        let columns: Vec<Vec<f64>> = (0..DEGREE)
-            .map(|p| dense.iter().map(|row| row[p]).collect())
-            .collect();
+        let columns: Vec<Vec<f64>> =
+            (0..DEGREE).map(|p| dense.iter().map(|row| row[p]).collect()).collect();
         let twice_dense: Vec<Vec<f64>> = columns.iter().map(|row| twice(row, rows)).collect();
-        let dense_position = (0..rows.len())
-            .map(|j| std::array::from_fn(|p| twice_dense[p][j]))
-            .collect();
+        let dense_position =
+            (0..rows.len()).map(|j| std::array::from_fn(|p| twice_dense[p][j])).collect();
         Self {
             nodes: rows.iter().map(|row| row.iter().sum()).collect(),
             error: error.map(|weights| [weights.to_vec(), twice(weights, rows)]),
@@ -93,12 +91,7 @@ pub(crate) fn hermite(end: &[f64], first_slope: f64, last_slope: &[f64]) -> Vec<
         .enumerate()
         .map(|(j, (b, slope))| {
             let first = if j == 0 { first_slope } else { 0.0 };
-            [
-                first,
-                3.0 * b - 2.0 * first - slope,
-                first + slope - 2.0 * b,
-                0.0,
-            ]
+            [first, 3.0 * b - 2.0 * first - slope, first + slope - 2.0 * b, 0.0]
         })
         .collect()
 }

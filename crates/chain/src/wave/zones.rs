@@ -128,18 +128,10 @@ impl Slow {
     ) -> Option<Range<usize>> {
         let start = needy.start.saturating_sub(2 * MARGIN);
         let end = needy.end + 2 * MARGIN;
-        let start = if start < window.start + 2 * MARGIN {
-            0
-        } else {
-            start
-        };
+        let start = if start < window.start + 2 * MARGIN { 0 } else { start };
         // Ahead of a wave that still runs on, bodies wake at every short step.
         let runs_on = window.end == reaches && window.end < bodies;
-        let end = if runs_on || end + 2 * MARGIN > window.end {
-            bodies
-        } else {
-            end
-        };
+        let end = if runs_on || end + 2 * MARGIN > window.end { bodies } else { end };
         let quick = end.min(window.end) - start.max(window.start);
         (2 * quick < window.len()).then_some(start..end)
     }
@@ -201,10 +193,8 @@ impl Slow {
         if !self.active {
             return;
         }
-        let now: Vec<(usize, (f64, f64))> = self
-            .bodies()
-            .map(|body| (body, self.at(table, state, body, time_s)))
-            .collect();
+        let now: Vec<(usize, (f64, f64))> =
+            self.bodies().map(|body| (body, self.at(table, state, body, time_s))).collect();
         for (body, (x, v)) in now {
             (state.x[body], state.v[body]) = (x, v);
         }
@@ -224,10 +214,7 @@ impl Slow {
 
     /// Gates that the long step has looked at afresh in every pass.
     fn set_gates(&self, system: &System, state: &mut State) {
-        for contact in Self::contacts(&self.quick, &self.window)
-            .into_iter()
-            .flatten()
-        {
+        for contact in Self::contacts(&self.quick, &self.window).into_iter().flatten() {
             let closed = state.overlap(system, contact) >= 0.0;
             let mode = if closed { Mode::Closed } else { Mode::Open };
             if state.mode[contact] != mode {

@@ -41,12 +41,7 @@ pub fn fire_all_in(
     (step, duration_s): (f64, f64),
     settings: &Settings,
 ) -> Vec<Result<LaneResult, SolveError>> {
-    let shot = |system| Shot {
-        system,
-        step,
-        duration_s,
-        precision,
-    };
+    let shot = |system| Shot { system, step, duration_s, precision };
     let shots: Vec<Shot<'_>> = systems.iter().map(shot).collect();
     fire(&shots, settings)
 }
@@ -72,17 +67,12 @@ pub fn passage(flown: &LaneResult) -> Option<Passage> {
     let [sensor, wall] = flown.signals.as_slice() else {
         return None;
     };
-    Passages::from_signals(sensor.clone(), wall.clone(), flown.time_s)
-        .passage()
-        .ok()
+    Passages::from_signals(sensor.clone(), wall.clone(), flown.time_s).passage().ok()
 }
 
 /// Incident and reflected time of flight in s.
 pub fn tofs(passage: &Passage) -> [f64; 2] {
-    [
-        passage.tof_incident_s(),
-        passage.tof_reflected_s().unwrap_or(f64::NAN),
-    ]
+    [passage.tof_incident_s(), passage.tof_reflected_s().unwrap_or(f64::NAN)]
 }
 
 /// The first number in which two flights differ, if any; the cost in bodies is
@@ -92,10 +82,7 @@ pub fn difference(one: &LaneResult, two: &LaneResult) -> Option<String> {
     if one.len() != two.len() {
         return Some(format!("{} and {} numbers", one.len(), two.len()));
     }
-    let other = one
-        .iter()
-        .zip(&two)
-        .find(|(a, b)| a.1.to_bits() != b.1.to_bits());
+    let other = one.iter().zip(&two).find(|(a, b)| a.1.to_bits() != b.1.to_bits());
     other.map(|(a, b)| format!("{}: {:e} and {:e}", a.0, a.1, b.1))
 }
 
@@ -112,16 +99,10 @@ fn numbers(flown: &LaneResult) -> Vec<(&'static str, f64)> {
         ("finished", f64::from(u8::from(flown.finished))),
     ];
     numbers.extend(flown.velocity_m_s.iter().copied().map(named("velocity")));
-    numbers.extend(
-        maxima
-            .flat_map(|m| [m.time_s, m.value])
-            .map(named("maximum")),
-    );
+    numbers.extend(maxima.flat_map(|m| [m.time_s, m.value]).map(named("maximum")));
     numbers.push(("correction", flown.correction));
     numbers.extend(
-        stretches
-            .flat_map(|s| [s.start_s].into_iter().chain(s.values))
-            .map(named("stretch")),
+        stretches.flat_map(|s| [s.start_s].into_iter().chain(s.values)).map(named("stretch")),
     );
     numbers
 }
@@ -129,12 +110,8 @@ fn numbers(flown: &LaneResult) -> Vec<(&'static str, f64)> {
 /// Step in contact times, and whether openings are followed, for an accuracy
 /// of both times of flight: log-linear between the rows.
 pub fn step_for(accuracy: f64) -> (f64, bool) {
-    const TABLE: [(f64, f64, bool); 4] = [
-        (1e-4, 0.2, false),
-        (1e-5, 0.135, false),
-        (1e-6, 0.05, true),
-        (1e-7, 0.03, true),
-    ];
+    const TABLE: [(f64, f64, bool); 4] =
+        [(1e-4, 0.2, false), (1e-5, 0.135, false), (1e-6, 0.05, true), (1e-7, 0.03, true)];
     let after = TABLE.iter().position(|row| row.0 <= accuracy);
     match after {
         Some(0) => (TABLE[0].1, TABLE[0].2),

@@ -18,48 +18,29 @@ pub const STEEL: Material = Material {
     bulk_viscosity_pa_s: 3.2e4,
 };
 
-pub const BALL: Bead = Bead {
-    radius_m: 6.35e-3,
-    mass_kg: 8.54e-3,
-    material: STEEL,
-};
+pub const BALL: Bead = Bead { radius_m: 6.35e-3, mass_kg: 8.54e-3, material: STEEL };
 
 pub fn hertz() -> Arc<dyn Law> {
     law(ElasticHertz { stiffness: None })
 }
 
 pub fn viscoelastic() -> Arc<dyn Law> {
-    law(DampingViscoelastic {
-        relaxation_time_s: None,
-        stiffness: None,
-    })
+    law(DampingViscoelastic { relaxation_time_s: None, stiffness: None })
 }
 
 pub fn cubic() -> Arc<dyn Law> {
-    law(DampingCubic {
-        coefficient_kg_s_m2: 77.0,
-    })
+    law(DampingCubic { coefficient_kg_s_m2: 77.0 })
 }
 
 /// `beads` equal balls between an equal striker and a fixed half-bead.
 pub fn row(beads: usize, speed_m_s: f64, laws: Vec<Arc<dyn Law>>) -> Chain {
     Chain {
         beads: vec![BALL; beads],
-        start: Start::Striker {
-            bead: BALL,
-            speed_m_s,
-        },
+        start: Start::Striker { bead: BALL, speed_m_s },
         initial: vec![],
         push: Push::None,
-        far: FarEnd::HalfBead {
-            radius_m: BALL.radius_m,
-            material: STEEL,
-        },
-        sections: vec![Section {
-            contacts: 0..=beads,
-            laws,
-            material: None,
-        }],
+        far: FarEnd::HalfBead { radius_m: BALL.radius_m, material: STEEL },
+        sections: vec![Section { contacts: 0..=beads, laws, material: None }],
         gaps: vec![],
         incline_rad: 0.0,
         gravity_m_s2: 9.80665,
@@ -71,10 +52,7 @@ pub fn row(beads: usize, speed_m_s: f64, laws: Vec<Arc<dyn Law>>) -> Chain {
 pub fn shoot_with(chain: &Chain, method: &dyn Method) -> (Passage, Outcome) {
     let system = System::new(chain).unwrap();
     let mut passages = Passages::new(7.min(system.beads()), system.contacts() - 1, true);
-    let limits = Limits {
-        budget: true,
-        ..Limits::until(1.0)
-    };
+    let limits = Limits { budget: true, ..Limits::until(1.0) };
     let outcome = run(&system, method, limits, &mut [&mut passages]).unwrap();
     (passages.passage().unwrap(), outcome)
 }
@@ -88,17 +66,9 @@ pub fn reference(case: &str, quantity: &str) -> f64 {
     let text = include_str!("../../../../bench/reference/numbers.json");
     let cases: serde_json::Value = serde_json::from_str(text).unwrap();
     let named = |value: &serde_json::Value, key: &str, name: &str| value[key] == *name;
-    let case = cases
-        .as_array()
-        .unwrap()
-        .iter()
-        .find(|c| named(c, "case", case))
-        .unwrap();
+    let case = cases.as_array().unwrap().iter().find(|c| named(c, "case", case)).unwrap();
     let results = case["results"].as_array().unwrap();
-    let result = results
-        .iter()
-        .find(|r| named(r, "quantity", quantity))
-        .unwrap();
+    let result = results.iter().find(|r| named(r, "quantity", quantity)).unwrap();
     result["value"].as_f64().unwrap()
 }
 
@@ -115,26 +85,13 @@ pub fn close(value: f64, expected: f64, relative: f64) {
 
 /// K = m = 1 with one elastic law: for numbers without units.
 pub fn unit_row(beads: usize, speed: f64, far: FarEnd) -> Chain {
-    let bead = Bead {
-        radius_m: 1.0,
-        mass_kg: 1.0,
-        material: Material::RIGID,
-    };
-    let laws = vec![law(ElasticHertz {
-        stiffness: Some(1.0),
-    })];
+    let bead = Bead { radius_m: 1.0, mass_kg: 1.0, material: Material::RIGID };
+    let laws = vec![law(ElasticHertz { stiffness: Some(1.0) })];
     Chain {
         beads: vec![bead; beads],
-        start: Start::Striker {
-            bead,
-            speed_m_s: speed,
-        },
+        start: Start::Striker { bead, speed_m_s: speed },
         far,
-        sections: vec![Section {
-            contacts: 0..=beads,
-            laws,
-            material: None,
-        }],
+        sections: vec![Section { contacts: 0..=beads, laws, material: None }],
         ..row(beads, speed, vec![])
     }
 }
@@ -142,9 +99,6 @@ pub fn unit_row(beads: usize, speed: f64, far: FarEnd) -> Chain {
 /// Runs a shot for a fixed time.
 pub fn run_for(chain: &Chain, tolerance: f64, duration_s: f64) -> Outcome {
     let system = System::new(chain).unwrap();
-    let limits = Limits {
-        budget: true,
-        ..Limits::until(duration_s)
-    };
+    let limits = Limits { budget: true, ..Limits::until(duration_s) };
     run(&system, &DormandPrince { tolerance }, limits, &mut []).unwrap()
 }

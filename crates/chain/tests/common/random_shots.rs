@@ -36,15 +36,10 @@ impl RandomShot {
 
 /// The first of an endless list of random shots.
 pub fn random_shots(count: usize) -> Vec<RandomShot> {
-    let config = Config {
-        rng_seed: RngSeed::Fixed(7),
-        ..Config::default()
-    };
+    let config = Config { rng_seed: RngSeed::Fixed(7), ..Config::default() };
     let mut runner = TestRunner::new(config);
     let strategy = shot();
-    (0..count)
-        .map(|_| strategy.new_tree(&mut runner).unwrap().current())
-        .collect()
+    (0..count).map(|_| strategy.new_tree(&mut runner).unwrap().current()).collect()
 }
 
 fn material() -> impl Strategy<Value = Material> {
@@ -57,11 +52,7 @@ fn material() -> impl Strategy<Value = Material> {
 }
 
 fn scaled(bead: Bead, radius: f64, mass: f64) -> Bead {
-    Bead {
-        radius_m: radius * bead.radius_m,
-        mass_kg: mass * bead.mass_kg,
-        ..bead
-    }
+    Bead { radius_m: radius * bead.radius_m, mass_kg: mass * bead.mass_kg, ..bead }
 }
 
 /// Equal beads, dimers, tapered rows, rows with an intruder.
@@ -78,11 +69,7 @@ fn beads() -> impl Strategy<Value = (&'static str, Bead, Vec<Bead>)> {
         let ratio = 5_f64.powf(size);
         match kind {
             0 => {}
-            1 => beads
-                .iter_mut()
-                .skip(1)
-                .step_by(2)
-                .for_each(|b| *b = scaled(bead, 1.0, ratio)),
+            1 => beads.iter_mut().skip(1).step_by(2).for_each(|b| *b = scaled(bead, 1.0, ratio)),
             2 => {
                 let factor = |i: usize| (1.0 + 0.02 * size).powi(i as i32);
                 for (i, b) in beads.iter_mut().enumerate() {
@@ -129,10 +116,9 @@ fn law_of(name: &str, size: f64, other: f64) -> Arc<dyn Law> {
             ("overlap_exponent", 0.5 * other),
         ],
         // As stiff as steel at ten micrometres.
-        "elastic_power" => vec![
-            ("exponent", 1.2 + other),
-            ("stiffness", 8.8e9 * 1e-5_f64.powf(0.3 - other)),
-        ],
+        "elastic_power" => {
+            vec![("exponent", 1.2 + other), ("stiffness", 8.8e9 * 1e-5_f64.powf(0.3 - other))]
+        }
         "elastic_plastic_thornton" => vec![("yield_pressure", 1e9 * (0.5 + size))],
         _ => vec![],
     };
@@ -156,11 +142,7 @@ fn wall() -> impl Strategy<Value = (&'static str, FarEnd)> {
         1 => ("plane", FarEnd::Plane { material }),
         _ => {
             let (radius_m, mass_kg) = (6e-3, 0.5 * 20_f64.powf(size));
-            let stop = FarEnd::Stop {
-                radius_m,
-                material,
-                mass_kg,
-            };
+            let stop = FarEnd::Stop { radius_m, material, mass_kg };
             ("stop", stop)
         }
     })
@@ -172,43 +154,23 @@ fn shot() -> impl Strategy<Value = RandomShot> {
     (beads(), laws(), wall(), rest).prop_map(|((row, striker, beads), (names, laws), far, rest)| {
         let ((pushed, push_n, inclined, incline_rad), gapped, clipped, gap, speed) = rest;
         let last = beads.len();
-        let (push_n, gap) = (
-            if pushed == 0 { push_n } else { 0.0 },
-            (gapped == 0).then_some(gap),
-        );
+        let (push_n, gap) = (if pushed == 0 { push_n } else { 0.0 }, (gapped == 0).then_some(gap));
         let incline_rad = if inclined == 0 { incline_rad } else { 0.0 };
         let tension = [Tension::Clipped, Tension::Allowed][usize::from(clipped != 0)];
-        let gaps = gap.map(|gap| Gap {
-            contact: last / 2,
-            gap_m: 10_f64.powf(gap),
-        });
+        let gaps = gap.map(|gap| Gap { contact: last / 2, gap_m: 10_f64.powf(gap) });
         let speed_m_s = 10_f64.powf(speed);
         let chain = Chain {
             beads,
-            start: Start::Striker {
-                bead: striker,
-                speed_m_s,
-            },
+            start: Start::Striker { bead: striker, speed_m_s },
             push: Push::Constant { force_n: push_n },
             far: far.1,
-            sections: vec![Section {
-                contacts: 0..=last,
-                laws,
-                material: None,
-            }],
+            sections: vec![Section { contacts: 0..=last, laws, material: None }],
             gaps: gaps.into_iter().collect(),
             incline_rad,
             tension,
             ..super::row(1, 1.0, vec![])
         };
         let gap = !chain.gaps.is_empty() && push_n == 0.0 && incline_rad == 0.0;
-        RandomShot {
-            laws: names,
-            wall: far.0,
-            chain,
-            row,
-            tension,
-            gap,
-        }
+        RandomShot { laws: names, wall: far.0, chain, row, tension, gap }
     })
 }

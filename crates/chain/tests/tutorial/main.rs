@@ -24,9 +24,7 @@ fn page_shows_nothing_but_code_that_runs_here() {
         include_str!("laws/elastic_cone.rs"),
     ];
     let blocks = page.split("```rust\n").skip(1);
-    let blocks: Vec<&str> = blocks
-        .map(|rest| rest.split("```").next().unwrap())
-        .collect();
+    let blocks: Vec<&str> = blocks.map(|rest| rest.split("```").next().unwrap()).collect();
     assert!(blocks.len() >= 4, "the page has lost its code");
     for block in blocks {
         let runs = code.iter().any(|file| words(file).contains(&words(block)));
@@ -41,12 +39,8 @@ fn words(code: &str) -> String {
 
 #[test]
 fn cone_pushes_with_the_slope_of_its_energy() {
-    let steel = Pair {
-        left: common::STEEL,
-        right: common::STEEL,
-        radius_m: 3.175e-3,
-        mass_kg: 4.27e-3,
-    };
+    let steel =
+        Pair { left: common::STEEL, right: common::STEEL, radius_m: 3.175e-3, mass_kg: 4.27e-3 };
     let cone = law(ElasticCone { slope: 0.02 });
     let k = Columns::from_rows(&[cone.coefficients(&steel).unwrap()]);
     let (overlap, step) = (2e-6, 2e-9);

@@ -12,10 +12,7 @@ fn row(name: &str, text: &str) -> Experiment {
 fn comments_blanks_and_places_do_not_matter() {
     let plain = row("row.toml", ROW).canonical_text();
     let commented = ROW.replace("count = 20", "# twenty of them\n\n  count   =  20");
-    assert_eq!(
-        row("/elsewhere/other.toml", &commented).canonical_text(),
-        plain
-    );
+    assert_eq!(row("/elsewhere/other.toml", &commented).canonical_text(), plain);
 }
 
 #[test]

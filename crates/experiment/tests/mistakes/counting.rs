@@ -23,27 +23,15 @@ fn bead_0_is_told_to_be_the_striker_wherever_it_is_written() {
 #[test]
 fn numbers_that_count_nothing_are_told_the_chain_s_own() {
     for value in ["-1", "7.5", "\"7\"", "true", "[7]", "2000001", "1e400"] {
-        says(
-            &after("bead = 7", &format!("bead = {value}")),
-            &["from 1 to 40"],
-        );
+        says(&after("bead = 7", &format!("bead = {value}")), &["from 1 to 40"]);
     }
     for value in ["-1", "7.5", "\"7\""] {
         let list = |key: &str| after("bead = 7", &format!("{key} = [{value}]"));
         says(&list("beads"), &["from 1 to 40", "counted from 1"]);
-        says(
-            &list("contacts"),
-            &["from 0 to 40", "contact 0 lies before bead 1"],
-        );
-        says(
-            &list("positions"),
-            &["from 0 to 40", "body 0 is the striker"],
-        );
+        says(&list("contacts"), &["from 0 to 40", "contact 0 lies before bead 1"]);
+        says(&list("positions"), &["from 0 to 40", "body 0 is the striker"]);
         let gap = format!("{DRY}\n[[gaps]]\ncontact = {value}\ngap = \"1 um\"\n");
-        says(
-            &only(&gap),
-            &["from 0 to 40", "contact 0 lies before bead 1"],
-        );
+        says(&only(&gap), &["from 0 to 40", "contact 0 lies before bead 1"]);
         let from = after("[[contacts]]\n", &format!("[[contacts]]\nfrom = {value}\n"));
         says(&from, &["from 0 to 40"]);
     }
@@ -55,18 +43,10 @@ fn beads_in_cells_and_several_groups_are_counted() {
     let cell = "{ count = 2, radius = \"1 mm\", mass = \"1 g\", material = \"aisi316\" }";
     let groups = format!("repeat = 5\ncell = [{cell}, {cell}]\n[[beads]]\n{material}");
     let text = DRY.replace(&format!("count = 40\n{material}"), &groups);
-    says(
-        &only(&text.replace("bead = 7", "bead = 0")),
-        &["from 1 to 21"],
-    );
+    says(&only(&text.replace("bead = 7", "bead = 0")), &["from 1 to 21"]);
     // A count in error leaves the chain's length open, and is reported as well.
-    let unknown = text
-        .replace("repeat = 5", "repeat = \"5\"")
-        .replace("bead = 7", "bead = 0");
+    let unknown = text.replace("repeat = 5", "repeat = \"5\"").replace("bead = 7", "bead = 0");
     let mistakes = hertzchain_experiment::Experiment::from_text("test.toml", &unknown);
     let reported = mistakes.unwrap_err().to_string();
-    assert!(
-        reported.contains("`repeat` is text") && reported.contains("`bead` = 0"),
-        "{reported}"
-    );
+    assert!(reported.contains("`repeat` is text") && reported.contains("`bead` = 0"), "{reported}");
 }

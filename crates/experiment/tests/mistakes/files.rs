@@ -31,11 +31,7 @@ fn only(path: &Path) -> String {
 
 #[test]
 fn an_empty_file_is_one_report() {
-    for (name, text) in [
-        ("empty", ""),
-        ("blank", "\n \n"),
-        ("comment", "# nothing\n"),
-    ] {
+    for (name, text) in [("empty", ""), ("blank", "\n \n"), ("comment", "# nothing\n")] {
         let report = only(&file(name, text.as_bytes()));
         assert!(report.contains("hertzchain presets dry"), "{report}");
     }
@@ -52,9 +48,7 @@ fn a_byte_order_mark_and_windows_line_ends_are_read() {
 
 #[test]
 fn a_mistake_after_a_byte_order_mark_and_windows_line_ends_is_at_its_line() {
-    let windows = DRY
-        .replace("6.35 mm\"\n", "6.35 kg\"\n")
-        .replace('\n', "\r\n");
+    let windows = DRY.replace("6.35 mm\"\n", "6.35 kg\"\n").replace('\n', "\r\n");
     let path = file("marked", format!("\u{feff}{windows}").as_bytes());
     let OpenError::Mistakes(mistakes) = Experiment::open(&path).unwrap_err() else {
         panic!("it can be read");
@@ -66,9 +60,8 @@ fn a_mistake_after_a_byte_order_mark_and_windows_line_ends_is_at_its_line() {
 
 #[test]
 fn other_encodings_and_binaries_are_named() {
-    let wide: Vec<u8> = (std::iter::once(0xFEFF).chain(DRY.encode_utf16()))
-        .flat_map(u16::to_le_bytes)
-        .collect();
+    let wide: Vec<u8> =
+        (std::iter::once(0xFEFF).chain(DRY.encode_utf16())).flat_map(u16::to_le_bytes).collect();
     assert!(unreadable(&file("wide", &wide)).contains("UTF-16"));
     let latin = b"title = \"x\"\n# caf\xe9\n";
     assert!(unreadable(&file("latin", latin)).contains("line 2 is not written in UTF-8"));

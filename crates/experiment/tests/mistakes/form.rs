@@ -6,11 +6,7 @@ use hertzchain_experiment::Experiment;
 #[test]
 fn an_unknown_key_names_the_nearest_and_all() {
     let finding = after("bead = 7", "baed = 7");
-    let words = [
-        "[sensors] has no key `baed`",
-        "did you mean `bead`",
-        "velocities, channel",
-    ];
+    let words = ["[sensors] has no key `baed`", "did you mean `bead`", "velocities, channel"];
     check(&finding, line_of("bead = 7"), "baed", &words);
     let finding = after("title =", "titel = \"\"\ntitle =");
     check(&finding, 1, "titel", &["did you mean `title`"]);
@@ -28,25 +24,11 @@ fn a_key_in_the_wrong_table_is_sent_home() {
 #[test]
 fn options_and_materials_name_the_nearest() {
     let finding = after("kind = \"half-bead\"", "kind = \"halfbead\"");
-    check(
-        &finding,
-        line_of("kind ="),
-        "\"halfbead\"",
-        &["did you mean `half-bead`", "plane-stop"],
-    );
+    check(&finding, line_of("kind ="), "\"halfbead\"", &["did you mean `half-bead`", "plane-stop"]);
     let finding = after("material = \"aisi316\"", "material = \"aisi361\"");
-    check(
-        &finding,
-        line_of("material = "),
-        "\"aisi361\"",
-        &["did you mean `aisi316`"],
-    );
+    check(&finding, line_of("material = "), "\"aisi361\"", &["did you mean `aisi316`"]);
     let finding = only(&format!("{DRY}\n[reading]\ncontact_6 = \"damp\"\n"));
-    assert!(
-        finding
-            .one_line()
-            .contains("expected one of: \"dry\", \"wet\"")
-    );
+    assert!(finding.one_line().contains("expected one of: \"dry\", \"wet\""));
 }
 
 #[test]
@@ -57,12 +39,9 @@ fn all_mistakes_of_form_come_at_once() {
         .replacen("bead = 7", "bead = \"seven\"", 1);
     let mistakes = Experiment::from_text("test.toml", &text).unwrap_err();
     let text = mistakes.to_string();
-    for words in [
-        "`raduis`",
-        "did you mean `radius`",
-        "`young_modulus` has no unit",
-        "`bead` is text",
-    ] {
+    for words in
+        ["`raduis`", "did you mean `radius`", "`young_modulus` has no unit", "`bead` is text"]
+    {
         assert!(text.contains(words), "{text} lacks {words}");
     }
 }

@@ -11,18 +11,10 @@ fn says(finding: &hertzchain_experiment::Finding, words: &str) {
 fn a_decimal_comma_is_told_to_be_a_point() {
     let radius = |value: &str| after("\"6.35 mm\"\nmass", &format!("{value}\nmass"));
     let line = line_of("radius = \"6.35 mm\"");
-    check(
-        &radius("\"6,35 mm\""),
-        line,
-        "\"6,35 mm\"",
-        &["write 6.35 mm"],
-    );
+    check(&radius("\"6,35 mm\""), line, "\"6,35 mm\"", &["write 6.35 mm"]);
     check(&radius("6,35 mm"), line, "6,35 mm", &["write \"6.35 mm\""]);
     says(&radius("\"6,350 mm\""), "write 6.350 mm, or 6350 mm");
-    says(
-        &after("poisson_ratio = 0.3", "poisson_ratio = 0,3"),
-        "write 0.3",
-    );
+    says(&after("poisson_ratio = 0.3", "poisson_ratio = 0,3"), "write 0.3");
 }
 
 #[test]
@@ -33,21 +25,13 @@ fn values_without_quotes_are_shown_with_them() {
         ("6.35mm", "expected quotes around a quantity: \"6.35mm\""),
         ("“6.35 mm”", "expected straight quotes: \"6.35 mm\""),
     ] {
-        check(
-            &radius(value),
-            line_of("radius = \"6.35 mm\""),
-            value,
-            &[expected],
-        );
+        check(&radius(value), line_of("radius = \"6.35 mm\""), value, &[expected]);
     }
     says(
         &after("kind = \"half-bead\"", "kind = half-bead"),
         "expected quotes around a text: \"half-bead\"",
     );
-    says(
-        &after("count = 40", "count ="),
-        "expected a value after `=`",
-    );
+    says(&after("count = 40", "count ="), "expected a value after `=`");
     says(&after("count = 40", "count : 40"), "expected `key = value`");
 }
 
@@ -61,25 +45,11 @@ fn a_list_that_was_not_opened_is_one_report() {
 #[test]
 fn keys_of_other_programs_are_told_ours() {
     let contacts = after("[[contacts]]\n", "[[contacts]]\ncontacts = [0, 6]\n");
-    check(
-        &contacts,
-        line_of("[[contacts]]") + 1,
-        "contacts",
-        &["`from` and `to`"],
-    );
+    check(&contacts, line_of("[[contacts]]") + 1, "contacts", &["`from` and `to`"]);
     says(&after("radius =", "diameter ="), "half the diameter");
-    says(
-        &after("kind = \"half-bead\"", "type = \"plane\""),
-        "needs `kind`",
-    );
-    says(
-        &after("bead = 7", "bead = 7\n[solver]\ntolerance = 1e-9"),
-        "did you mean `accuracy`",
-    );
-    says(
-        &after("\"elastic_hertz\"", "\"hertz\""),
-        "did you mean `elastic_hertz`",
-    );
+    says(&after("kind = \"half-bead\"", "type = \"plane\""), "needs `kind`");
+    says(&after("bead = 7", "bead = 7\n[solver]\ntolerance = 1e-9"), "did you mean `accuracy`");
+    says(&after("\"elastic_hertz\"", "\"hertz\""), "did you mean `elastic_hertz`");
     let named = after("{ law = \"damping_cubic\"", "{ name = \"damping_cubic\"");
     says(&named, "write `law` in place of `name`");
 }
@@ -110,12 +80,7 @@ fn a_table_in_the_wrong_place_is_sent_to_its_own() {
 fn materials_without_a_name_are_one_report() {
     let finding = after("[materials.aisi316]", "[materials]");
     let line = line_of("young_modulus");
-    check(
-        &finding,
-        line,
-        "young_modulus",
-        &["such as [materials.steel]"],
-    );
+    check(&finding, line, "young_modulus", &["such as [materials.steel]"]);
 }
 
 #[test]
@@ -125,10 +90,7 @@ fn an_exponent_in_error_does_not_blame_the_unit_that_follows_it() {
         after("\"elastic_hertz\"", &law)
     };
     says(&power(""), "needs `exponent`");
-    says(
-        &power(", exponent = 0.5"),
-        "`exponent` is 0.5, but must be from 1 to 100",
-    );
+    says(&power(", exponent = 0.5"), "`exponent` is 0.5, but must be from 1 to 100");
     says(&power(", exponent = 1000"), "from 1 to 100");
 }
 

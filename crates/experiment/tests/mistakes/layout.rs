@@ -6,10 +6,7 @@ use hertzchain_experiment::Experiment;
 #[test]
 fn a_sensor_outside_the_chain_is_told_the_chain() {
     let line = line_of("bead = 7");
-    let words = [
-        "sensor bead 41 is outside the chain of 40 beads",
-        "from 1 to 40",
-    ];
+    let words = ["sensor bead 41 is outside the chain of 40 beads", "from 1 to 40"];
     check(&after("bead = 7", "bead = 41"), line, "41", &words);
     let finding = after("bead = 7", "bead = 7\ncontacts = [3, 41]");
     check(&finding, line + 1, "41", &["contact 41", "from 0 to 40"]);
@@ -19,23 +16,13 @@ fn a_sensor_outside_the_chain_is_told_the_chain() {
 fn what_does_not_exist_has_no_sensor() {
     let free = DRY.replace("kind = \"half-bead\"", "kind = \"free\"");
     let finding = only(&free.replace("bead = 7", "contacts = [40]"));
-    assert!(
-        finding.one_line().contains("from 0 to 39"),
-        "{}",
-        finding.one_line()
-    );
+    assert!(finding.one_line().contains("from 0 to 39"), "{}", finding.one_line());
     let finding = only(&free.replace("bead = 7", "channel = true"));
     assert!(finding.one_line().contains("there is no wall"));
-    let initial = DRY.replace(
-        "[striker]\nspeed = \"0.5 m/s\"",
-        "[[initial]]\nbead = 1\nvelocity = \"1 m/s\"",
-    );
+    let initial = DRY
+        .replace("[striker]\nspeed = \"0.5 m/s\"", "[[initial]]\nbead = 1\nvelocity = \"1 m/s\"");
     let finding = only(&initial.replace("bead = 7", "velocities = [0]"));
-    assert!(
-        finding.one_line().contains("from 1 to 40"),
-        "{}",
-        finding.one_line()
-    );
+    assert!(finding.one_line().contains("from 1 to 40"), "{}", finding.one_line());
 }
 
 #[test]
@@ -58,14 +45,9 @@ fn contact_sections_meet_without_overlap_or_hole() {
 
 #[test]
 fn keys_that_do_not_go_together_are_told_apart() {
-    let finding = after(
-        "kind = \"half-bead\"",
-        "kind = \"plane\"\nradius = \"1 mm\"",
-    );
+    let finding = after("kind = \"half-bead\"", "kind = \"plane\"\nradius = \"1 mm\"");
     assert!(
-        finding
-            .one_line()
-            .contains("kind = \"plane\" has no key `radius`"),
+        finding.one_line().contains("kind = \"plane\" has no key `radius`"),
         "{}",
         finding.one_line()
     );
@@ -75,11 +57,7 @@ fn keys_that_do_not_go_together_are_told_apart() {
     );
     assert!(finding.one_line().contains("a striker and a driven end"));
     let finding = after("[striker]\nspeed = \"0.5 m/s\"", "");
-    assert!(
-        finding
-            .one_line()
-            .contains("nothing sets the chain in motion")
-    );
+    assert!(finding.one_line().contains("nothing sets the chain in motion"));
     let finding = only(&format!("{DRY}\n[solver]\nstep = \"1 us\"\n"));
     assert!(finding.one_line().contains("chooses its own steps"));
     let finding = after("kind = \"half-bead\"", "kind = \"periodic\"");
@@ -104,15 +82,9 @@ fn a_missing_elastic_law_is_found_where_the_laws_are() {
     let finding = refused(&format!("{without}\n[track]\nincline = \"1 deg\"\n"));
     assert_eq!(finding.line(), line_of("laws = ["));
     let line = finding.one_line();
-    assert!(
-        line.contains("no law of these contacts carries a load"),
-        "{line}"
-    );
+    assert!(line.contains("no law of these contacts carries a load"), "{line}");
     assert!(line.contains("add \"elastic_hertz\""), "{line}");
-    let (_, warnings) = Experiment::from_text("test.toml", &without)
-        .unwrap()
-        .chain(None)
-        .unwrap();
+    let (_, warnings) = Experiment::from_text("test.toml", &without).unwrap().chain(None).unwrap();
     assert_eq!(warnings[0].line(), line_of("laws = ["));
 }
 
@@ -128,11 +100,7 @@ fn what_moves_nothing_is_refused() {
     let finding = instead("[[initial]]\nbead = 3");
     assert!(finding.one_line().contains("neither displaced nor moving"));
     let finding = instead("[[initial]]\nbead = 3\nvelocity = \"0 m/s\"");
-    assert!(
-        finding
-            .one_line()
-            .contains("nothing sets the chain in motion")
-    );
+    assert!(finding.one_line().contains("nothing sets the chain in motion"));
     let finding =
         instead("[driven]\nmotion = \"sine\"\namplitude = \"0 m\"\nfrequency = \"1 kHz\"");
     assert_eq!(finding.text(), "\"0 m\"");
@@ -140,20 +108,15 @@ fn what_moves_nothing_is_refused() {
 
 #[test]
 fn a_speed_asked_of_a_chain_without_a_striker_points_at_what_moves_it() {
-    let free = DRY.replace(
-        "[striker]\nspeed = \"0.5 m/s\"",
-        "[[initial]]\nbead = 3\nvelocity = \"1 m/s\"",
-    );
+    let free = DRY
+        .replace("[striker]\nspeed = \"0.5 m/s\"", "[[initial]]\nbead = 3\nvelocity = \"1 m/s\"");
     let experiment = Experiment::from_text("test.toml", &free).unwrap();
     for mistakes in [
         experiment.chain(Some(1.0)).unwrap_err(),
         experiment.needs_striker("a sweep needs one").unwrap_err(),
     ] {
         assert_eq!(mistakes.findings()[0].text(), "[[initial]]", "{mistakes}");
-        assert!(
-            mistakes.to_string().contains("put a [striker]"),
-            "{mistakes}"
-        );
+        assert!(mistakes.to_string().contains("put a [striker]"), "{mistakes}");
     }
 }
 

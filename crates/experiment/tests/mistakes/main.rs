@@ -1,9 +1,5 @@
 //! Every mistake is one report with line, text, expectation and advice.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 mod counting;
 mod effort;
@@ -44,11 +40,7 @@ fn check(finding: &Finding, line: usize, text: &str, words: &[&str]) {
     assert_eq!(finding.text(), text, "{}", finding.one_line());
     assert_eq!(finding.file(), "test.toml");
     for word in words {
-        assert!(
-            finding.one_line().contains(word),
-            "{} lacks {word}",
-            finding.one_line()
-        );
+        assert!(finding.one_line().contains(word), "{} lacks {word}", finding.one_line());
     }
 }
 

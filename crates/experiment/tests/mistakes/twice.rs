@@ -32,12 +32,7 @@ fn a_second_material_of_the_same_name_is_one_report() {
 fn a_table_after_a_list_of_tables_is_told_the_double_brackets() {
     let finding = only(&format!("{DRY}\n[beads]\ncount = 3\n"));
     let line = DRY.lines().count() + 2;
-    check(
-        &finding,
-        line,
-        "beads",
-        &["write [[beads]] to add one more"],
-    );
+    check(&finding, line, "beads", &["write [[beads]] to add one more"]);
     assert_eq!(finding.other_line(), Some(line_of("[[beads]]")));
 }
 
@@ -48,10 +43,7 @@ fn a_second_key_is_one_report_that_shows_the_first() {
     let words = ["`count` stands here a second time", "keep one of the two"];
     check(&finding, line + 1, "count", &words);
     assert_eq!(finding.other_line(), Some(line));
-    let finding = after(
-        "\"77 kg s/m^2\" }",
-        "\"77 kg s/m^2\", coefficient = \"7 kg s/m^2\" }",
-    );
+    let finding = after("\"77 kg s/m^2\" }", "\"77 kg s/m^2\", coefficient = \"7 kg s/m^2\" }");
     assert_eq!(finding.other_line(), Some(finding.line()));
     assert_eq!(places(&finding), 2);
 }
@@ -66,20 +58,12 @@ fn overlapping_sections_are_one_report_with_both_places_and_what_to_write() {
     };
     let line = line_of("[[contacts]]");
     let finding = two("to = 9", "from = 5");
-    let words = [
-        "contacts 5 to 9 belong to two sections",
-        "`to = 4`",
-        "`from = 10`",
-    ];
+    let words = ["contacts 5 to 9 belong to two sections", "`to = 4`", "`from = 10`"];
     check(&finding, line + 4, "5", &words);
     assert_eq!(finding.other_line(), Some(line + 1));
     assert_eq!(places(&finding), 2);
     let all = two("", "from = 5");
-    assert!(
-        all.one_line().contains("no `to` means"),
-        "{}",
-        all.one_line()
-    );
+    assert!(all.one_line().contains("no `to` means"), "{}", all.one_line());
     assert_eq!(all.other_line(), Some(line));
     let both = two("", "").one_line();
     assert!(both.contains("several laws on the same contacts"), "{both}");
@@ -89,20 +73,13 @@ fn overlapping_sections_are_one_report_with_both_places_and_what_to_write() {
 
 #[test]
 fn the_same_law_twice_in_a_section_is_refused_and_a_sum_of_two_is_not() {
-    let finding = after(
-        "\"elastic_hertz\",",
-        "\"elastic_hertz\",\n  \"elastic_hertz\",",
-    );
+    let finding = after("\"elastic_hertz\",", "\"elastic_hertz\",\n  \"elastic_hertz\",");
     let line = line_of("\"elastic_hertz\"");
     let words = ["law `elastic_hertz` stands twice", "would double"];
     check(&finding, line + 1, "\"elastic_hertz\"", &words);
     assert_eq!(finding.other_line(), Some(line));
     let damping = "{ law = \"damping_cubic\", coefficient = \"7 kg s/m^2\" },";
-    let sum = DRY.replacen(
-        "\"elastic_hertz\",",
-        &format!("\"elastic_hertz\", {damping}"),
-        1,
-    );
+    let sum = DRY.replacen("\"elastic_hertz\",", &format!("\"elastic_hertz\", {damping}"), 1);
     assert!(Experiment::from_text("test.toml", &sum).is_ok());
 }
 
@@ -111,10 +88,7 @@ fn gaps_and_initial_states_given_twice_show_both_places() {
     let gaps = "\n[[gaps]]\ncontact = 3\ngap = \"1 um\"\n[[gaps]]\ncontact = 3\ngap = \"2 um\"\n";
     let finding = only(&format!("{DRY}{gaps}"));
     let lines = DRY.lines().count();
-    assert_eq!(
-        (finding.line(), finding.other_line()),
-        (lines + 6, Some(lines + 3))
-    );
+    assert_eq!((finding.line(), finding.other_line()), (lines + 6, Some(lines + 3)));
 }
 
 #[test]
@@ -124,10 +98,7 @@ fn a_misspelt_needed_key_is_not_missed_as_well() {
         ("speed =", "velocity ="),
         ("[[beads]]", "[[bead]]"),
         ("young_modulus =", "E ="),
-        (
-            "\"213 GPa\"\npoisson",
-            "{ prefacter = \"213 GPa\", exponent = 0.1 }\npoisson",
-        ),
+        ("\"213 GPa\"\npoisson", "{ prefacter = \"213 GPa\", exponent = 0.1 }\npoisson"),
     ] {
         let line = after(from, to).one_line();
         assert!(line.contains("did you mean"), "{line}");
@@ -147,17 +118,11 @@ fn many_tables_given_twice_are_told_without_starting_over_for_each() {
 fn a_slip_that_all_members_of_a_list_share_is_one_mistake() {
     let table = "[driven]\nmotion = \"table\"\ntimes = [0, 1, 2]\npositions = [\"0 m\", \"1 um\", \"2 um\"]";
     let finding = only(&DRY.replace("[striker]\nspeed = \"0.5 m/s\"", table));
-    assert_eq!(
-        (finding.text(), finding.line()),
-        ("0", line_of("[striker]") + 2)
-    );
+    assert_eq!((finding.text(), finding.line()), ("0", line_of("[striker]") + 2));
 }
 
 #[test]
 fn braces_left_open_are_one_report() {
-    let finding = after(
-        "coefficient = \"77 kg s/m^2\" },",
-        "coefficient = \"77 kg s/m^2\"",
-    );
+    let finding = after("coefficient = \"77 kg s/m^2\" },", "coefficient = \"77 kg s/m^2\"");
     assert!(finding.one_line().contains("not valid TOML"));
 }

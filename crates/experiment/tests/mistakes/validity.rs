@@ -21,8 +21,7 @@ fn warning(text: &str) -> Warning {
 }
 
 fn dissipative() -> impl Iterator<Item = &'static Row> {
-    LAWS.iter()
-        .filter(|row| row.info.nature == Nature::Dissipative)
+    LAWS.iter().filter(|row| row.info.nature == Nature::Dissipative)
 }
 
 /// A dimensionless chain with one dissipative law at a value of its first
@@ -60,11 +59,7 @@ fn every_law_that_stops_all_motion_is_refused_with_its_balance() {
         let balance = balance(&finding);
         assert!(warnings(&damped(row, 0.5 * balance)).is_empty(), "{line}");
         let strong = warning(&damped(row, 2.0 * balance));
-        assert!(
-            strong.one_line().contains("do not come apart again"),
-            "{}",
-            strong.one_line()
-        );
+        assert!(strong.one_line().contains("do not come apart again"), "{}", strong.one_line());
         let validity = strong.help().unwrap().to_string();
         assert!(validity.contains(row.info.validity), "{validity}");
     }
@@ -74,15 +69,8 @@ fn every_law_that_stops_all_motion_is_refused_with_its_balance() {
 fn every_law_too_weak_to_be_seen_is_warned_of() {
     for row in dissipative() {
         let weak = warning(&damped(row, 1e-40));
-        assert!(
-            weak.one_line().contains("too weak to change any result"),
-            "{}",
-            weak.one_line()
-        );
-        assert!(
-            warnings(&damped(row, 0.0)).is_empty(),
-            "0 is a way to say no"
-        );
+        assert!(weak.one_line().contains("too weak to change any result"), "{}", weak.one_line());
+        assert!(warnings(&damped(row, 0.0)).is_empty(), "0 is a way to say no");
     }
 }
 
@@ -97,35 +85,18 @@ fn a_damping_of_the_wrong_size_is_underlined_in_its_section() {
         DRY.replace("[[contacts]]\n", "[[contacts]]\nto = 20\n")
     );
     let finding = refused(&wet);
-    assert_eq!(
-        finding.line(),
-        1 + wet.lines().position(|l| l.contains("1e20")).unwrap()
-    );
-    assert!(
-        finding.one_line().contains("contact 21"),
-        "{}",
-        finding.one_line()
-    );
+    assert_eq!(finding.line(), 1 + wet.lines().position(|l| l.contains("1e20")).unwrap());
+    assert!(finding.one_line().contains("contact 21"), "{}", finding.one_line());
 }
 
 #[test]
 fn a_viscosity_of_the_wrong_size_is_underlined_in_its_material() {
     let text = DRY.replace("\"3.2e4 Pa s\"", "\"1e20 Pa s\"");
     let words = ["damping_viscoelastic", "viscosities"];
-    check(
-        &refused(&text),
-        line_of("shear_viscosity = "),
-        "\"1e20 Pa s\"",
-        &words,
-    );
+    check(&refused(&text), line_of("shear_viscosity = "), "\"1e20 Pa s\"", &words);
     let bulk = "\"3.2e4 Pa s\"\nbulk_viscosity = \"1e20 Pa s\"";
     let text = DRY.replace("\"3.2e4 Pa s\"", bulk);
-    check(
-        &refused(&text),
-        line_of("shear_viscosity = ") + 1,
-        "\"1e20 Pa s\"",
-        &words,
-    );
+    check(&refused(&text), line_of("shear_viscosity = ") + 1, "\"1e20 Pa s\"", &words);
     let text = DRY.replace("\"3.2e4 Pa s\"", "\"3.2e6 Pa s\"");
     let finding = warning(&text);
     check(
@@ -150,11 +121,7 @@ fn overlaps_that_are_not_small_are_warned_of_at_their_probable_cause() {
     ] {
         let finding = warning(&bare.replacen(from, to, 1));
         let line = 1 + bare.lines().position(|l| l.contains(from)).unwrap();
-        let words = [
-            "of their reduced radius",
-            "out of its range",
-            "smooth spheres",
-        ];
+        let words = ["of their reduced radius", "out of its range", "smooth spheres"];
         check(&finding, line, text, &words);
     }
 }
@@ -162,37 +129,19 @@ fn overlaps_that_are_not_small_are_warned_of_at_their_probable_cause() {
 #[test]
 fn bodies_that_would_pass_into_each_other_are_refused() {
     let speed = DRY.replace("\"0.5 m/s\"", "\"1e5 m/s\"");
-    let words = [
-        "more than a bead's radius",
-        "expected bodies that stop within 0.0063 m",
-    ];
+    let words = ["more than a bead's radius", "expected bodies that stop within 0.0063 m"];
     check(&refused(&speed), line_of("speed = "), "\"1e5 m/s\"", &words);
     let soft = DRY.replace("= \"213 GPa\"", "= \"1 Pa\"");
-    check(
-        &refused(&soft),
-        line_of("young_modulus = "),
-        "\"1 Pa\"",
-        &words,
-    );
+    check(&refused(&soft), line_of("young_modulus = "), "\"1 Pa\"", &words);
     let yielding = "{ law = \"elastic_plastic_thornton\", yield_pressure = \"1 Pa\" }";
     let plastic = DRY.replacen("\"elastic_hertz\"", yielding, 1);
-    check(
-        &refused(&plastic),
-        line_of("\"elastic_hertz\""),
-        yielding,
-        &words,
-    );
+    check(&refused(&plastic), line_of("\"elastic_hertz\""), yielding, &words);
     let moved = DRY.replace(
         "[striker]\nspeed = \"0.5 m/s\"",
         "[[initial]]\nbead = 40\ndisplacement = \"1 m\"",
     );
     let finding = refused(&moved);
-    check(
-        &finding,
-        line_of("0.5 m/s"),
-        "40",
-        &["contact 40 is overlapped by 1 m"],
-    );
+    check(&finding, line_of("0.5 m/s"), "40", &["contact 40 is overlapped by 1 m"]);
 }
 
 #[test]
@@ -201,13 +150,7 @@ fn overlaps_are_those_of_a_hertz_collision() {
     let text = DRY.replace("\"0.5 m/s\"", "\"200 m/s\"");
     let found = warnings(&text);
     let line = found[0].one_line();
-    let reported = line
-        .split("overlap by ")
-        .nth(1)
-        .unwrap()
-        .split(' ')
-        .next()
-        .unwrap();
+    let reported = line.split("overlap by ").nth(1).unwrap().split(' ').next().unwrap();
     let collision = ElasticCollision {
         exponent: 1.5,
         stiffness: 8.7926303796e9,

@@ -49,11 +49,7 @@ pub struct PowerLawReply {
 
 impl Speeds {
     fn all(self) -> Result<Vec<f64>, Refusal> {
-        let Self {
-            from_m_s,
-            to_m_s,
-            count,
-        } = self;
+        let Self { from_m_s, to_m_s, count } = self;
         let ordered = from_m_s > 0.0 && from_m_s < to_m_s && to_m_s.is_finite();
         if !ordered || !(2..=MOST_SPEEDS).contains(&count) {
             return Err(Refusal::Error(format!(
@@ -63,9 +59,7 @@ impl Speeds {
         }
         let ratio = to_m_s / from_m_s;
         let last = (count - 1) as f64;
-        Ok((0..count)
-            .map(|at| from_m_s * ratio.powf(at as f64 / last))
-            .collect())
+        Ok((0..count).map(|at| from_m_s * ratio.powf(at as f64 / last)).collect())
     }
 }
 
@@ -82,9 +76,7 @@ pub(super) fn batch(text: &str, speeds: &Speeds) -> Result<BatchReply, Refusal> 
     let result = batch.run(Shard::WHOLE, &|| {});
     let column = |of| {
         let numbers = result.rows.column(of).iter();
-        numbers
-            .map(|number| number.is_finite().then_some(*number))
-            .collect()
+        numbers.map(|number| number.is_finite().then_some(*number)).collect()
     };
     let speed_m_s = result.rows.column(Column::Speed).to_vec();
     let law = |of| law(result.rows.law(of, result.accuracy).0.ok());

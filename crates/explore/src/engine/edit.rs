@@ -204,9 +204,7 @@ fn value_of(json: &Json) -> Option<Value> {
             values.map(Value::Array)
         }
         Json::Object(entries) => {
-            let values = entries
-                .iter()
-                .map(|(key, json)| Some((key.as_str(), value_of(json)?)));
+            let values = entries.iter().map(|(key, json)| Some((key.as_str(), value_of(json)?)));
             let table: Option<InlineTable> = values.collect();
             table.map(Value::InlineTable)
         }
@@ -220,9 +218,7 @@ pub(super) fn tree(text: &str) -> Option<Json> {
 }
 
 fn json_of_table(table: &dyn TableLike) -> Json {
-    let entries = table
-        .iter()
-        .map(|(key, item)| (key.to_owned(), json_of(item)));
+    let entries = table.iter().map(|(key, item)| (key.to_owned(), json_of(item)));
     Json::Object(entries.collect())
 }
 

@@ -153,22 +153,14 @@ fn dispatch(request: &Request, verbs: &dyn Verbs) -> Result<Reply, Refusal> {
         Request::Check { text, edits } => {
             outline::check(text, edits).map(Box::new).map(Reply::Check)
         }
-        Request::Shot {
-            text,
-            samples,
-            draft,
-        } => shot::shot(text, *samples, *draft)
-            .map(Box::new)
-            .map(Reply::Shot),
+        Request::Shot { text, samples, draft } => {
+            shot::shot(text, *samples, *draft).map(Box::new).map(Reply::Shot)
+        }
         Request::Batch { text, speeds } => {
             batch::batch(text, speeds).map(Box::new).map(Reply::Batch)
         }
         Request::Theory { text } => outline::theory(text).map(Reply::Theory),
         Request::Measure(recording) => words::reported(verbs.measure(recording)),
-        Request::Fit {
-            text,
-            table,
-            options,
-        } => words::reported(verbs.fit(text, table, options)),
+        Request::Fit { text, table, options } => words::reported(verbs.fit(text, table, options)),
     }
 }

@@ -88,12 +88,7 @@ pub(super) fn check(text: &str, edits: &[Edit]) -> Result<OutlineReply, Refusal>
         Err(Refusal::Mistakes(mistakes)) => (None, mistakes),
         Err(other) => return Err(other),
     };
-    Ok(OutlineReply {
-        tree: edit::tree(&text),
-        text,
-        mistakes,
-        outline,
-    })
+    Ok(OutlineReply { tree: edit::tree(&text), text, mistakes, outline })
 }
 
 fn outline(text: &str) -> Result<Outline, Refusal> {
@@ -119,7 +114,5 @@ pub(super) fn theory(text: &str) -> Result<Vec<GroupReply>, Refusal> {
     let chain = experiment.chain_and_system(None);
     let (chain, _, _) = chain.map_err(|mistakes| Refusal::of_text(text, &mistakes))?;
     let said = describe_theory(&experiment, &chain);
-    Ok(groups(
-        &said.map_err(|error| Refusal::of_study(text, error))?,
-    ))
+    Ok(groups(&said.map_err(|error| Refusal::of_study(text, error))?))
 }

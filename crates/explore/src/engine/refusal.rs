@@ -71,10 +71,7 @@ impl Mistake {
         if let Some(document) = &document {
             of_table(document.as_table(), &mut Vec::new(), &mut places);
         }
-        findings
-            .iter()
-            .map(|finding| Self::of(finding, &places))
-            .collect()
+        findings.iter().map(|finding| Self::of(finding, &places)).collect()
     }
 
     fn of(finding: &Finding, places: &[Place]) -> Self {

@@ -129,11 +129,7 @@ pub(super) fn shot(text: &str, samples: usize, draft: bool) -> Result<ShotReply,
         StudyError::NotConverged(why) => refused(experiment.unreached(why)),
         _ => Refusal::of_study(text, error),
     };
-    let shot = if draft {
-        shoot(&plan)
-    } else {
-        shoot_estimated(&plan)
-    };
+    let shot = if draft { shoot(&plan) } else { shoot_estimated(&plan) };
     let shot = shot.map_err(failed)?;
     let system = plan.chain.system().map_err(Refusal::words)?;
     let bodies = bodies(&experiment, &plan.chain, &system);
@@ -153,14 +149,10 @@ pub(super) fn shot(text: &str, samples: usize, draft: bool) -> Result<ShotReply,
 /// The numbers of a shot, nothing that is drawn.
 fn numbers(experiment: &Experiment, plan: &Plan, shot: &Shot) -> ShotReply {
     let seen = shot.passage.as_ref().ok();
-    let missing = shot
-        .passage
-        .as_ref()
-        .err()
-        .map(|error| match plan.chain.far {
-            FarEnd::Free | FarEnd::Periodic { .. } => "the chain has no wall".to_owned(),
-            _ => error.to_string(),
-        });
+    let missing = shot.passage.as_ref().err().map(|error| match plan.chain.far {
+        FarEnd::Free | FarEnd::Periodic { .. } => "the chain has no wall".to_owned(),
+        _ => error.to_string(),
+    });
     let rebound = shot.rebound.as_ref();
     ShotReply {
         speed_m_s: experiment.speed_m_s(),
@@ -169,9 +161,7 @@ fn numbers(experiment: &Experiment, plan: &Plan, shot: &Shot) -> ShotReply {
         accuracy_reached: shot.accuracy_reached,
         missing,
         incident: seen.map(|seen| peak(&seen.incident, seen.incident_width_s)),
-        wall: shot
-            .wall()
-            .map(|wall| peak(&wall, seen.and_then(|seen| seen.wall_width_s))),
+        wall: shot.wall().map(|wall| peak(&wall, seen.and_then(|seen| seen.wall_width_s))),
         reflected: seen
             .and_then(|seen| Some(peak(seen.reflected.as_ref()?, seen.reflected_width_s))),
         pulse_speed_beads_s: shot.pulse_speed_beads_s,
@@ -190,11 +180,7 @@ fn numbers(experiment: &Experiment, plan: &Plan, shot: &Shot) -> ShotReply {
 }
 
 fn peak(of: &Maximum, width_s: Option<f64>) -> Peak {
-    Peak {
-        time_s: of.time_s,
-        value_n: of.value,
-        width_s,
-    }
+    Peak { time_s: of.time_s, value_n: of.value, width_s }
 }
 
 /// The bodies in a row, gaps and all, from left to right.
@@ -220,15 +206,12 @@ fn bodies(experiment: &Experiment, chain: &Chain, system: &System) -> Vec<Body> 
     };
     let beads = chain.beads.iter().enumerate();
     let beads = beads.map(|(at, bead)| body("bead", at + 1, bead.radius_m, Some(bead.mass_kg)));
-    let (end, last) = (
-        chain.beads.len() + 1,
-        chain.beads.last().map_or(1.0, |bead| bead.radius_m),
-    );
+    let (end, last) = (chain.beads.len() + 1, chain.beads.last().map_or(1.0, |bead| bead.radius_m));
     let far = match &chain.far {
         FarEnd::HalfBead { radius_m, .. } => Some(body("half-bead", end, *radius_m, None)),
-        FarEnd::Stop {
-            radius_m, mass_kg, ..
-        } => Some(body("half-bead", end, *radius_m, Some(*mass_kg))),
+        FarEnd::Stop { radius_m, mass_kg, .. } => {
+            Some(body("half-bead", end, *radius_m, Some(*mass_kg)))
+        }
         FarEnd::Plane { .. } => Some(body("plane", end, last, None)),
         FarEnd::PlaneStop { mass_kg, .. } => Some(body("plane", end, last, Some(*mass_kg))),
         FarEnd::Periodic { .. } | FarEnd::Free => None,
@@ -258,9 +241,7 @@ fn sampled(
     bodies: &[Body],
     asked: usize,
 ) -> Result<(Trace, f64), StudyError> {
-    let samples = asked
-        .min(MOST_SAMPLES)
-        .min(MOST_NUMBERS / (2 * bodies.len().max(1)));
+    let samples = asked.min(MOST_SAMPLES).min(MOST_NUMBERS / (2 * bodies.len().max(1)));
     let interval_s = shot.duration_s / samples.max(2) as f64;
     // Without a wall there is no contact N: the column stays unused.
     let wall = match has_wall(plan) {
@@ -305,22 +286,14 @@ fn energy(trace: &Trace, shot: &Shot) -> Option<EnergyReply> {
     let mut budgets: Vec<&Budget> = trace.budgets.iter().collect();
     budgets.push(last);
     let part = |name: &str, of: &dyn Fn(&Budget) -> f64| {
-        (
-            name.to_owned(),
-            budgets
-                .iter()
-                .map(|budget| of(budget))
-                .collect::<Vec<f64>>(),
-        )
+        (name.to_owned(), budgets.iter().map(|budget| of(budget)).collect::<Vec<f64>>())
     };
     let lost = (0..last.dissipated.len()).map(|at| {
         let of = move |budget: &Budget| budget.dissipated.get(at).map_or(0.0, |line| line.energy_j);
         part(last.dissipated[at].law, &of)
     });
-    let held = [
-        part("kinetic", &|budget| budget.kinetic_j),
-        part("elastic", &|budget| budget.elastic_j),
-    ];
+    let held =
+        [part("kinetic", &|budget| budget.kinetic_j), part("elastic", &|budget| budget.elastic_j)];
     let rest = [
         part("clipped", &|budget| budget.clipped_j),
         part("gravity", &|budget| budget.gravity_j),
@@ -328,11 +301,7 @@ fn energy(trace: &Trace, shot: &Shot) -> Option<EnergyReply> {
         part("stop", &|budget| budget.stop_j),
     ];
     let all = held.into_iter().chain(lost).chain(rest);
-    let matters = |curve: &[f64]| {
-        curve
-            .iter()
-            .any(|energy| energy.abs() > 1e-6 * last.input_j)
-    };
+    let matters = |curve: &[f64]| curve.iter().any(|energy| energy.abs() > 1e-6 * last.input_j);
     Some(EnergyReply {
         time_s: Array(budgets.iter().map(|budget| budget.time_s as f32).collect()),
         input_j: last.input_j,

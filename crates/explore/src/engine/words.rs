@@ -34,11 +34,7 @@ pub(super) fn groups(groups: &[Group]) -> Vec<GroupReply> {
 }
 
 fn row(row: &Row) -> RowReply {
-    RowReply {
-        name: row.name.trim().to_owned(),
-        value: value(&row.value),
-        unit: row.unit.clone(),
-    }
+    RowReply { name: row.name.trim().to_owned(), value: value(&row.value), unit: row.unit.clone() }
 }
 
 fn value(of: &Value) -> Json {

@@ -41,11 +41,7 @@ impl Guard {
     pub(super) fn is_local(&self, headers: &HeaderMap) -> bool {
         let text = |name| headers.get(name).and_then(|value| value.to_str().ok());
         let host = text(&HOST).is_some_and(|host| self.names().iter().any(|name| name == host));
-        let own = |origin: &str| {
-            self.names()
-                .iter()
-                .any(|name| origin == format!("http://{name}"))
-        };
+        let own = |origin: &str| self.names().iter().any(|name| origin == format!("http://{name}"));
         let origin = headers.get(&ORIGIN).is_none() || text(&ORIGIN).is_some_and(own);
         let site = text(&SITE).is_none_or(|site| matches!(site, "same-origin" | "none"));
         host && origin && site

@@ -26,10 +26,7 @@ struct Lanes {
 
 impl Default for Jobs {
     fn default() -> Self {
-        Self {
-            lanes: Mutex::default(),
-            places: Arc::new(Semaphore::new(MOST_RUNNING)),
-        }
+        Self { lanes: Mutex::default(), places: Arc::new(Semaphore::new(MOST_RUNNING)) }
     }
 }
 
@@ -61,12 +58,7 @@ impl Jobs {
         lanes.next += 1;
         lanes.stops.insert(lane.clone(), (number, stop.clone()));
         drop(lanes);
-        Some(Job {
-            jobs: self,
-            lane,
-            number,
-            stop,
-        })
+        Some(Job { jobs: self, lane, number, stop })
     }
 
     /// Returns the work of a lane, if it has some.

@@ -40,10 +40,7 @@ pub(super) async fn respond(
 
 async fn route(server: &Server, request: hyper::Request<Incoming>) -> Page {
     if !server.guard.is_local(request.headers()) {
-        return refused(
-            StatusCode::FORBIDDEN,
-            "this server answers its own page alone",
-        );
+        return refused(StatusCode::FORBIDDEN, "this server answers its own page alone");
     }
     let path = request.uri().path().to_owned();
     match (request.method(), path.as_str()) {
@@ -105,10 +102,7 @@ async fn api(server: &Server, request: hyper::Request<Incoming>, path: &str) -> 
 async fn compute(server: &Server, request: hyper::Request<Incoming>, lane: &str) -> Page {
     let is_json = request.headers().get(CONTENT_TYPE);
     if is_json.is_none_or(|kind| kind != "application/json") {
-        return refused(
-            StatusCode::UNSUPPORTED_MEDIA_TYPE,
-            "expected application/json",
-        );
+        return refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, "expected application/json");
     }
     let body = match body(request).await {
         Ok(body) => body,
@@ -156,9 +150,7 @@ async fn run(server: &Server, job: &Job<'_>, request: Request) -> Result<Reply, 
         answered
     });
     answered.await.unwrap_or_else(|error| {
-        Err(Refusal::Error(format!(
-            "the engine failed, which is a bug: {error}"
-        )))
+        Err(Refusal::Error(format!("the engine failed, which is a bug: {error}")))
     })
 }
 
@@ -174,10 +166,7 @@ async fn body(request: hyper::Request<Incoming>) -> Result<Bytes, Page> {
     match tokio::time::timeout(BODY, body).await {
         Ok(Ok(body)) => Ok(body.to_bytes()),
         Ok(Err(error)) if error.is::<LengthLimitError>() => Err(too_long()),
-        _ => Err(refused(
-            StatusCode::REQUEST_TIMEOUT,
-            "the request did not come whole",
-        )),
+        _ => Err(refused(StatusCode::REQUEST_TIMEOUT, "the request did not come whole")),
     }
 }
 
@@ -210,9 +199,7 @@ fn response(status: StatusCode, kind: &'static str, body: Bytes) -> Page {
         (resource, "same-origin"),
     ];
     for (name, value) in headers {
-        response
-            .headers_mut()
-            .insert(name, HeaderValue::from_static(value));
+        response.headers_mut().insert(name, HeaderValue::from_static(value));
     }
     response
 }

@@ -46,12 +46,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ),
         (
             "rig_bare",
-            RigDrawing {
-                beads: 6,
-                bead_label: "$R$ = 5 mm".into(),
-                ..RigDrawing::default()
-            }
-            .figure(),
+            RigDrawing { beads: 6, bead_label: "$R$ = 5 mm".into(), ..RigDrawing::default() }
+                .figure(),
         ),
     ];
     for (name, figure) in pictures {
@@ -73,10 +69,7 @@ fn grid(from: f64, to: f64, count: u32) -> Vec<f64> {
 }
 
 fn log_grid(from: f64, to: f64, count: u32) -> Vec<f64> {
-    grid(from.ln(), to.ln(), count)
-        .into_iter()
-        .map(f64::exp)
-        .collect()
+    grid(from.ln(), to.ln(), count).into_iter().map(f64::exp).collect()
 }
 
 fn map(x: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
@@ -102,22 +95,12 @@ fn signals() -> Figure {
         ("motor oil, $v_0$ = 0.3993 m/s", 16.0, 0.8),
     ];
     let panels = cases.map(|(name, scale, split)| {
-        let data = map(&t, |t| {
-            signal(t, scale, split) + 0.004 * scale * (t * 1.7).sin()
-        });
+        let data = map(&t, |t| signal(t, scale, split) + 0.004 * scale * (t * 1.7).sin());
         let model = map(&t, |t| signal(t, scale, split));
         Chart::new("Time (µs)", "Force (N)")
             .title(name)
-            .with(
-                Series::line("virtual rig", &t, &data)
-                    .colour(Colour::GREY)
-                    .width(0.7),
-            )
-            .with(
-                Series::line("model", &t, &model)
-                    .colour(Colour::VERMILION)
-                    .dash(Dash::Dashed),
-            )
+            .with(Series::line("virtual rig", &t, &data).colour(Colour::GREY).width(0.7))
+            .with(Series::line("model", &t, &model).colour(Colour::VERMILION).dash(Dash::Dashed))
     });
     let empty = Figure::double_column(105.0).columns(2).letters().share_x();
     panels.into_iter().fold(empty, Figure::panel)
@@ -166,11 +149,7 @@ fn ratios() -> Figure {
     let set = |name: &str, marker, colour, f: fn(f64) -> f64| {
         let y = map(&v, f);
         let e = map(&v, |v| 0.004 / v.sqrt());
-        Series::line(name, &v, &y)
-            .marker(marker)
-            .colour(colour)
-            .width(0.6)
-            .y_error(&e)
+        Series::line(name, &v, &y).marker(marker).colour(colour).width(0.6).y_error(&e)
     };
     let chart = Chart::new(
         "Impact speed $v_0$ (m/s)",
@@ -180,15 +159,10 @@ fn ratios() -> Figure {
     .with(set("pump, DS19", Marker::Triangle, Colour::GREEN, |v| {
         1.0 + 0.035 * (v / 1.1).ln() / 2.7
     }))
-    .with(set("gear, EP 80W-90", Marker::Square, Colour::BLUE, |v| {
-        0.985 + 0.008 * (v * 5.0).sin()
+    .with(set("gear, EP 80W-90", Marker::Square, Colour::BLUE, |v| 0.985 + 0.008 * (v * 5.0).sin()))
+    .with(set("motor, SAE 0W-30", Marker::Circle, Colour::VERMILION, |v| {
+        1.025 + 0.02 * v.ln() / 2.6
     }))
-    .with(set(
-        "motor, SAE 0W-30",
-        Marker::Circle,
-        Colour::VERMILION,
-        |v| 1.025 + 0.02 * v.ln() / 2.6,
-    ))
     .h_line(1.0, "as dry")
     .v_line(1.1, "paper's crossing");
     Figure::single_column(64.0).panel(chart)
@@ -223,11 +197,7 @@ fn space_time() -> Figure {
     let positive = Chart::new("Time (µs)", "Bead")
         .title("pump oil")
         .heat(heat(ColourMap::Sequential, "Velocity (m/s)"));
-    Figure::double_column(62.0)
-        .columns(2)
-        .letters()
-        .panel(signed)
-        .panel(positive)
+    Figure::double_column(62.0).columns(2).letters().panel(signed).panel(positive)
 }
 
 fn energy() -> Figure {
@@ -240,18 +210,12 @@ fn energy() -> Figure {
         .with(Series::band("dissipated", &t, &zero, &lost).colour(Colour::VERMILION))
         .with(Series::band("elastic", &t, &lost, &elastic).colour(Colour::BLUE))
         .with(Series::band("kinetic", &t, &elastic, &total).colour(Colour::GREY));
-    let residual = Chart::new("Time (µs)", "Residual")
-        .y_log()
-        .with(Series::line(
-            "",
-            &t,
-            &map(&t, |t| 1e-13 * (1.0 + t) * (1.5 + (t / 7.0).sin())),
-        ));
-    Figure::single_column(95.0)
-        .letters()
-        .share_x()
-        .panel(chart)
-        .panel(residual)
+    let residual = Chart::new("Time (µs)", "Residual").y_log().with(Series::line(
+        "",
+        &t,
+        &map(&t, |t| 1e-13 * (1.0 + t) * (1.5 + (t / 7.0).sin())),
+    ));
+    Figure::single_column(95.0).letters().share_x().panel(chart).panel(residual)
 }
 
 fn lost_at(t: f64) -> f64 {
@@ -277,28 +241,12 @@ fn residuals() -> Figure {
     let decades = Chart::new("Frequency (Hz)", "Amplitude $A_n$")
         .x_log()
         .y_log()
-        .with(Series::points(
-            "measured",
-            &few,
-            &map(&few, |f| 1e3 / (1.0 + f * f)),
-        ))
-        .with(Series::line(
-            "Lorentz",
-            &few,
-            &map(&few, |f| 1e3 / (1.0 + f * f)),
-        ))
-        .with(Series::line(
-            "steeper",
-            &few,
-            &map(&few, |f| 3e2 / (1.0 + f * f * f)),
-        ))
+        .with(Series::points("measured", &few, &map(&few, |f| 1e3 / (1.0 + f * f))))
+        .with(Series::line("Lorentz", &few, &map(&few, |f| 1e3 / (1.0 + f * f))))
+        .with(Series::line("steeper", &few, &map(&few, |f| 3e2 / (1.0 + f * f * f))))
         .with(Series::line("flat", &few, &map(&few, |_| 1e-6)));
     let long = Chart::new("Sample", "Signal (V)").with(Series::line("a million samples", &x, &y));
-    Figure::double_column(60.0)
-        .columns(2)
-        .letters()
-        .panel(long)
-        .panel(decades)
+    Figure::double_column(60.0).columns(2).letters().panel(long).panel(decades)
 }
 
 const CLAIMS: [&str; 8] = [
@@ -335,9 +283,7 @@ fn verdicts() -> Figure {
 }
 
 fn verdicts_many() -> Figure {
-    let names: Vec<String> = (1..=28)
-        .map(|i| format!("reading {i}, as bounded at 1/2"))
-        .collect();
+    let names: Vec<String> = (1..=28).map(|i| format!("reading {i}, as bounded at 1/2")).collect();
     let columns: Vec<&str> = names.iter().map(String::as_str).collect();
     claims_table(&columns)
 }
@@ -347,11 +293,7 @@ fn claims_table(columns: &[&str]) -> Figure {
         let cells: Vec<Verdict> = (0..columns.len()).map(|c| verdict(i + 3 * c)).collect();
         table.row(claim, &cells)
     };
-    CLAIMS
-        .iter()
-        .enumerate()
-        .fold(VerdictMatrix::new(columns), row)
-        .figure()
+    CLAIMS.iter().enumerate().fold(VerdictMatrix::new(columns), row).figure()
 }
 
 fn paper_rig() -> RigDrawing {
@@ -428,9 +370,5 @@ fn panels() -> Figure {
             .h_line(1.0, "")
             .note(&format!("slope {tilt:.3}"))
     };
-    names
-        .iter()
-        .enumerate()
-        .map(panel)
-        .fold(empty, Figure::panel)
+    names.iter().enumerate().map(panel).fold(empty, Figure::panel)
 }

@@ -131,11 +131,7 @@ impl Animation {
             ("f", base64_u16(&f)),
             ("fRange", range(f_range)),
             ("contacts", forces.len().to_string()),
-            (
-                "wet",
-                self.wet_contacts
-                    .map_or("null".into(), |(a, b)| format!("[{a},{b}]")),
-            ),
+            ("wet", self.wet_contacts.map_or("null".into(), |(a, b)| format!("[{a},{b}]"))),
             ("marks", self.marks_json()),
             ("timeScale", number(self.time_unit.0)),
             ("timeUnit", json_text(&self.time_unit.1)),
@@ -149,17 +145,14 @@ impl Animation {
 
     /// Every how many beads one is kept.
     fn stride(&self) -> usize {
-        (self.positions_m.len() * FEWEST_FRAMES)
-            .div_ceil(MOST_VALUES)
-            .max(1)
+        (self.positions_m.len() * FEWEST_FRAMES).div_ceil(MOST_VALUES).max(1)
     }
 
     fn frame_times(&self, beads: usize) -> Vec<f64> {
         let frames = (MOST_VALUES / beads.max(1)).clamp(FEWEST_FRAMES, MOST_FRAMES);
         let finite = self.times_s.iter().copied().filter(|t| t.is_finite());
-        let (from, to) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| {
-            (a.min(t), b.max(t))
-        });
+        let (from, to) =
+            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
         if from >= to {
             return vec![0.0, 0.0];
         }
@@ -171,10 +164,7 @@ impl Animation {
         let moved = |bead: &usize| {
             let path = self.positions_m.get(*bead).map_or(&[][..], Vec::as_slice);
             let start = self.start(*bead);
-            resampled(&self.times_s, path, grid)
-                .iter()
-                .map(|x| x - start)
-                .collect()
+            resampled(&self.times_s, path, grid).iter().map(|x| x - start).collect()
         };
         beads.iter().map(moved).collect()
     }
@@ -206,11 +196,7 @@ impl Animation {
         }
         let decade = 10f64.powf(wanted.log10().floor());
         let steps = [5.0, 2.0, 1.0];
-        steps
-            .iter()
-            .map(|s| s * decade)
-            .find(|f| *f <= wanted)
-            .unwrap_or(1.0)
+        steps.iter().map(|s| s * decade).find(|f| *f <= wanted).unwrap_or(1.0)
     }
 
     fn radius(&self, bead: usize) -> f64 {
@@ -221,26 +207,18 @@ impl Animation {
     /// First finite position of a bead.
     fn start(&self, bead: usize) -> f64 {
         let path = self.positions_m.get(bead);
-        path.and_then(|p| p.iter().copied().find(|x| x.is_finite()))
-            .unwrap_or(0.0)
+        path.and_then(|p| p.iter().copied().find(|x| x.is_finite())).unwrap_or(0.0)
     }
 
     fn marks_json(&self) -> String {
-        let entries = self
-            .marks
-            .iter()
-            .map(|(bead, name)| format!("[{bead},{}]", json_text(name)));
+        let entries = self.marks.iter().map(|(bead, name)| format!("[{bead},{}]", json_text(name)));
         format!("[{}]", entries.collect::<Vec<_>>().join(","))
     }
 }
 
 /// A number as JavaScript writes it.
 fn number(value: f64) -> String {
-    if value.is_finite() {
-        format!("{value:e}")
-    } else {
-        "0".into()
-    }
+    if value.is_finite() { format!("{value:e}") } else { "0".into() }
 }
 
 fn range((lo, hi): (f64, f64)) -> String {
@@ -249,11 +227,8 @@ fn range((lo, hi): (f64, f64)) -> String {
 
 /// The sequential map as 256 hexadecimal colours.
 fn colours() -> String {
-    let hex = (0..256).map(|i| {
-        ColourMap::Sequential
-            .colour(0.97 - f64::from(i) / 300.0)
-            .to_string()
-    });
+    let hex =
+        (0..256).map(|i| ColourMap::Sequential.colour(0.97 - f64::from(i) / 300.0).to_string());
     json_text(&hex.collect::<String>())
 }
 
@@ -268,10 +243,7 @@ fn resampled(times: &[f64], values: &[f64], grid: &[f64]) -> Vec<f64> {
         .collect();
     let at = |t: f64| {
         let next = known.partition_point(|(known_t, _)| *known_t < t);
-        match (
-            next.checked_sub(1).and_then(|i| known.get(i)),
-            known.get(next),
-        ) {
+        match (next.checked_sub(1).and_then(|i| known.get(i)), known.get(next)) {
             (Some((t0, v0)), Some((t1, v1))) if t1 > t0 => v0 + (v1 - v0) * (t - t0) / (t1 - t0),
             (_, Some((_, v))) | (Some((_, v)), None) => *v,
             (None, None) => 0.0,
@@ -287,11 +259,7 @@ fn quantised(rows: &[Vec<f64>]) -> (Vec<u16>, (f64, f64)) {
     let (lo, hi) = all().fold((0.0_f64, 0.0_f64), |(lo, hi), v| (lo.min(v), hi.max(v)));
     let step = (hi - lo) / f64::from(u16::MAX);
     let level = |v: f64| {
-        if step > 0.0 {
-            ((v - lo) / step).round() as u16
-        } else {
-            0
-        }
+        if step > 0.0 { ((v - lo) / step).round() as u16 } else { 0 }
     };
     (all().map(level).collect(), (lo, hi))
 }
@@ -304,10 +272,7 @@ fn base64_u16(values: &[u16]) -> String {
 
 /// Single precision, little-endian, as a quoted base64 text.
 fn base64_f32(values: &[f64]) -> String {
-    let bytes: Vec<u8> = values
-        .iter()
-        .flat_map(|v| (*v as f32).to_le_bytes())
-        .collect();
+    let bytes: Vec<u8> = values.iter().flat_map(|v| (*v as f32).to_le_bytes()).collect();
     format!("\"{}\"", STANDARD.encode(bytes))
 }
 

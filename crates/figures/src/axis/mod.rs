@@ -25,10 +25,7 @@ pub(crate) struct Ticks {
 impl Ticks {
     /// Width of the widest label at a font size.
     pub(crate) fn widest(&self, font: f64) -> f64 {
-        let widths = self
-            .major
-            .iter()
-            .map(|tick| TextLine::new(&tick.label, font).width());
+        let widths = self.major.iter().map(|tick| TextLine::new(&tick.label, font).width());
         widths.fold(0.0, f64::max)
     }
 
@@ -70,31 +67,21 @@ impl Room {
     /// Whether no two neighbouring labels touch.
     fn fits(&self, scale: &Scale, ticks: &[Tick]) -> bool {
         let spans: Vec<(f64, f64)> = ticks.iter().filter_map(|t| self.span(scale, t)).collect();
-        spans
-            .windows(2)
-            .all(|w| (w[1].0 - w[0].0).abs() >= 0.5 * (w[0].1 + w[1].1))
+        spans.windows(2).all(|w| (w[1].0 - w[0].0).abs() >= 0.5 * (w[0].1 + w[1].1))
     }
 
     /// Position and needed length of a label along the axis.
     fn span(&self, scale: &Scale, tick: &Tick) -> Option<(f64, f64)> {
         let position = scale.share(tick.value)? * self.length;
         let line = TextLine::new(&tick.label, self.font);
-        let size = if self.side_by_side {
-            line.width() + 0.8 * self.font
-        } else {
-            1.5 * self.font
-        };
+        let size = if self.side_by_side { line.width() + 0.8 * self.font } else { 1.5 * self.font };
         Some((position, size))
     }
 }
 
 /// The richest set of ticks whose labels have room.
 pub(crate) fn ticks(scale: &Scale, room: &Room) -> Ticks {
-    if scale.log {
-        log_ticks(scale, room)
-    } else {
-        linear_ticks(scale, room)
-    }
+    if scale.log { log_ticks(scale, room) } else { linear_ticks(scale, room) }
 }
 
 /// A tick distance of `mantissa * 10^exponent`.
@@ -108,10 +95,7 @@ impl TickStep {
     /// The first step that cuts the span into no more than `parts`.
     fn at_least(span: f64, parts: f64) -> Self {
         let raw = span / parts;
-        let mut step = Self {
-            mantissa: 1,
-            exponent: raw.log10().floor() as i32,
-        };
+        let mut step = Self { mantissa: 1, exponent: raw.log10().floor() as i32 };
         // One, two or three changes lead from a power of ten to the next.
         for _ in 0..4 {
             if step.size() < raw * (1.0 - 1e-9) {
@@ -176,11 +160,7 @@ fn linear_ticks(scale: &Scale, room: &Room) -> Ticks {
         step = step.before();
         major = labelled(scale, step, exponent);
     }
-    Ticks {
-        minor: minor(scale, step),
-        major,
-        exponent,
-    }
+    Ticks { minor: minor(scale, step), major, exponent }
 }
 
 /// Power of ten to take out of the labels of very large or small numbers.
@@ -253,11 +233,7 @@ fn log_ticks(scale: &Scale, room: &Room) -> Ticks {
     if found.len() < 2 {
         return even_steps(scale, room);
     }
-    Ticks {
-        minor: unlabelled(scale, &found),
-        major: found,
-        exponent: None,
-    }
+    Ticks { minor: unlabelled(scale, &found), major: found, exponent: None }
 }
 
 /// Decades between labels so that about five remain.
@@ -285,10 +261,7 @@ fn powers(scale: &Scale, mantissas: &[u32], every: i32) -> Vec<Tick> {
         .filter(|e| e.rem_euclid(every) == 0)
         .flat_map(|e| mantissas.iter().map(move |m| (*m, e)))
         .filter(|(m, e)| scale.holds(value(*m, *e)))
-        .map(|(m, e)| Tick {
-            value: value(m, e),
-            label: write(m, e),
-        })
+        .map(|(m, e)| Tick { value: value(m, e), label: write(m, e) })
         .collect()
 }
 
@@ -298,10 +271,7 @@ fn unlabelled(scale: &Scale, major: &[Tick]) -> Vec<f64> {
     let labels_missing = |p: &Tick| major.iter().all(|t| t.value != p.value);
     let crowded = powers(scale, &[1], 1).iter().any(labels_missing);
     let mantissas: &[u32] = if crowded { &[1] } else { CHOICES[0].0 };
-    let mut found: Vec<f64> = powers(scale, mantissas, 1)
-        .iter()
-        .map(|t| t.value)
-        .collect();
+    let mut found: Vec<f64> = powers(scale, mantissas, 1).iter().map(|t| t.value).collect();
     found.retain(|v| major.iter().all(|t| t.value != *v));
     found
 }
@@ -329,11 +299,7 @@ fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let digits = text.trim_start_matches('-');
     let zero = digits.chars().all(|c| matches!(c, '0' | '.'));
-    if zero || !text.starts_with('-') {
-        digits.to_owned()
-    } else {
-        format!("−{digits}")
-    }
+    if zero || !text.starts_with('-') { digits.to_owned() } else { format!("−{digits}") }
 }
 
 /// `mantissa * 10^exponent` in plain decimals.

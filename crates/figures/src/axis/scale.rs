@@ -15,11 +15,7 @@ const SMALLEST: f64 = 1e-290;
 
 impl Extent {
     pub(crate) fn new(log: bool) -> Self {
-        Self {
-            lo: f64::INFINITY,
-            hi: f64::NEG_INFINITY,
-            log,
-        }
+        Self { lo: f64::INFINITY, hi: f64::NEG_INFINITY, log }
     }
 
     /// Takes in a value unless the axis cannot show it.
@@ -48,11 +44,7 @@ impl Extent {
             let (lo, hi) = if log { (0.1, 10.0) } else { (0.0, 1.0) };
             return Scale { lo, hi, log };
         }
-        if log {
-            padded_log(lo, hi, pad)
-        } else {
-            padded_linear(lo, hi, pad)
-        }
+        if log { padded_log(lo, hi, pad) } else { padded_linear(lo, hi, pad) }
     }
 }
 
@@ -73,11 +65,7 @@ fn padded_linear(lo: f64, hi: f64, pad: f64) -> Scale {
 fn padded_log(lo: f64, hi: f64, pad: f64) -> Scale {
     let span = hi.ln() - lo.ln();
     let ratio = if span < 1e-6 { 1.1 } else { (pad * span).exp() };
-    Scale {
-        lo: (lo / ratio).max(0.1 * SMALLEST),
-        hi: (hi * ratio).min(10.0 * LARGEST),
-        log: true,
-    }
+    Scale { lo: (lo / ratio).max(0.1 * SMALLEST), hi: (hi * ratio).min(10.0 * LARGEST), log: true }
 }
 
 /// A linear or logarithmic map of `[lo, hi]` to the unit interval.
@@ -94,11 +82,7 @@ impl Scale {
         let finite = lo.is_finite() && hi.is_finite() && lo.abs().max(hi.abs()) <= LARGEST;
         let wide_enough = (hi - lo).abs() > SMALLEST + 1e-8 * lo.abs().max(hi.abs());
         let sound = finite && wide_enough && (!log || lo.min(hi) >= SMALLEST);
-        sound.then_some(Self {
-            lo: lo.min(hi),
-            hi: lo.max(hi),
-            log,
-        })
+        sound.then_some(Self { lo: lo.min(hi), hi: lo.max(hi), log })
     }
 
     /// Position of a value, 0 at `lo` and 1 at `hi`; nothing if it has none.
@@ -129,8 +113,7 @@ impl Scale {
     }
 
     pub(crate) fn holds(&self, value: f64) -> bool {
-        self.share(value)
-            .is_some_and(|s| (-1e-9..=1.0 + 1e-9).contains(&s))
+        self.share(value).is_some_and(|s| (-1e-9..=1.0 + 1e-9).contains(&s))
     }
 }
 

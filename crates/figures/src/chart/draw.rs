@@ -14,11 +14,7 @@ impl Prepared<'_> {
     /// Draws everything: the data inside `frame`, the labels around it.
     pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
         let (chart, style) = (self.chart, &self.style);
-        let plot = Plot {
-            frame: *frame,
-            x: self.x,
-            y: self.y,
-        };
+        let plot = Plot { frame: *frame, x: self.x, y: self.y };
         if let Some(map) = &chart.heat {
             map.draw(svg, &plot);
             map.draw_bar(svg, frame, style);
@@ -35,8 +31,7 @@ impl Prepared<'_> {
             self.draw_y_labels(svg, frame);
         }
         let bottom = frame.y0 - self.factor_room() - 0.3 * style.small;
-        self.legend
-            .draw(svg, chart, style, frame.centre().x, bottom);
+        self.legend.draw(svg, chart, style, frame.centre().x, bottom);
         self.draw_extras(svg, &plot);
     }
 
@@ -68,9 +63,7 @@ impl Prepared<'_> {
         let major = ticks.major.iter().map(|tick| (tick.value, long));
         let all = major.chain(ticks.minor.iter().map(|value| (*value, short)));
         let placed = all.filter_map(|(value, length)| Some((scale.share(value)?, length)));
-        placed
-            .filter(|(share, _)| (0.0..=1.0).contains(share))
-            .collect()
+        placed.filter(|(share, _)| (0.0..=1.0).contains(share)).collect()
     }
 
     fn draw_x_labels(&self, svg: &mut Svg, frame: &Rect) {
@@ -105,13 +98,7 @@ impl Prepared<'_> {
         let label = TextLine::new(&self.chart.y.label, self.style.label);
         let label = label.shrunk_to(1.08 * frame.height());
         let x = frame.x0 - 4.5 - self.y_ticks.widest(small) - label.descent();
-        label.draw_turned(
-            svg,
-            Point::new(x, frame.centre().y),
-            Anchor::CENTRE,
-            ink,
-            90.0,
-        );
+        label.draw_turned(svg, Point::new(x, frame.centre().y), Anchor::CENTRE, ink, 90.0);
     }
 
     /// Inset, labels of reference lines and notes, each where it hides least.
@@ -124,27 +111,16 @@ impl Prepared<'_> {
         if let Some(inset) = &chart.inset {
             let size = (INSET * frame.width(), INSET * frame.height());
             let corners = places(&frame.grown(-6.0), size.0, size.1);
-            taken
-                .take(&corners[..4])
-                .into_iter()
-                .for_each(|area| draw_inset(svg, inset, &area));
+            taken.take(&corners[..4]).into_iter().for_each(|area| draw_inset(svg, inset, &area));
         }
-        for line in chart
-            .references
-            .iter()
-            .filter(|line| !line.label.is_empty())
-        {
+        for line in chart.references.iter().filter(|line| !line.label.is_empty()) {
             let Some((a, b)) = line.ends(plot) else {
                 continue;
             };
             let text = TextLine::new(&line.label, style.small);
             let text = text.shrunk_to(0.9 * (b.y - a.y).max(b.x - a.x));
             if let Some(place) = taken.take(&line.label_places(plot, &text, a)) {
-                let angle = if place.height() > place.width() {
-                    90.0
-                } else {
-                    0.0
-                };
+                let angle = if place.height() > place.width() { 90.0 } else { 0.0 };
                 text.draw_turned(svg, place.centre(), Anchor::MIDDLE, Colour::grey(70), angle);
             }
         }

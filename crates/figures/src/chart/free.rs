@@ -27,13 +27,7 @@ impl Occupancy {
         let columns = (frame.width() / cell).ceil() as usize + 1;
         let rows = (frame.height() / cell).ceil() as usize + 1;
         let cells = vec![0; columns * rows];
-        Self {
-            frame,
-            cell,
-            columns,
-            rows,
-            cells,
-        }
+        Self { frame, cell, columns, rows, cells }
     }
 
     /// The data and reference lines of a chart.
@@ -41,21 +35,15 @@ impl Occupancy {
         let mut taken = Self::new(plot.frame);
         for series in &chart.series {
             if series.has_line() {
-                strokes::pieces(plot, series)
-                    .iter()
-                    .for_each(|piece| taken.mark_line(piece, 3));
+                strokes::pieces(plot, series).iter().for_each(|piece| taken.mark_line(piece, 3));
             }
             if let SeriesKind::Band(upper) = &series.kind {
                 let edges = series.xy().zip(upper);
                 for edge in edges.map(|((x, low), high)| plot.at(x, low).zip(plot.at(x, *high))) {
-                    edge.into_iter()
-                        .for_each(|(a, b)| taken.mark_line(&[a, b], 1));
+                    edge.into_iter().for_each(|(a, b)| taken.mark_line(&[a, b], 1));
                 }
             }
-            if matches!(
-                series.kind,
-                SeriesKind::Points(_) | SeriesKind::LinePoints(_)
-            ) {
+            if matches!(series.kind, SeriesKind::Points(_) | SeriesKind::LinePoints(_)) {
                 let r = style.marker + 1.0;
                 for p in strokes::centres(plot, series) {
                     taken.mark_rect(&Rect::sized(p.x - r, p.y - r, 2.0 * r, 2.0 * r), 4);

@@ -45,18 +45,10 @@ impl<'a> Prepared<'a> {
     pub(crate) fn new(chart: &'a Chart, style: ChartStyle, size: (f64, f64)) -> Self {
         let (x, y) = (x_scale(chart, &style), y_scale(chart, &style));
         let font = style.small;
-        let room = |length, side_by_side| Room {
-            length,
-            font,
-            side_by_side,
-        };
+        let room = |length, side_by_side| Room { length, font, side_by_side };
         let x_ticks = ticks(&x, &room(size.0, true));
         Self {
-            x_ticks: if chart.x.whole {
-                x_ticks.whole()
-            } else {
-                x_ticks
-            },
+            x_ticks: if chart.x.whole { x_ticks.whole() } else { x_ticks },
             y_ticks: ticks(&y, &room(size.1, false)),
             legend: LegendBox::new(chart, font, size.0),
             chart,
@@ -71,12 +63,7 @@ impl<'a> Prepared<'a> {
     pub(crate) fn margins(&self) -> Margins {
         let (chart, style) = (self.chart, &self.style);
         let height = |text: &str| TextLine::new(text, style.label).height();
-        let mut side = Margins {
-            left: 2.0,
-            right: 2.0,
-            top: 0.55 * style.small,
-            bottom: 2.0,
-        };
+        let mut side = Margins { left: 2.0, right: 2.0, top: 0.55 * style.small, bottom: 2.0 };
         if !chart.y.unlabelled {
             side.left = self.y_ticks.widest(style.small) + 3.5;
             if !chart.y.label.is_empty() {
@@ -92,10 +79,7 @@ impl<'a> Prepared<'a> {
             side.left = side.left.max(left);
             side.right = side.right.max(right);
         }
-        let bar = chart
-            .heat
-            .as_ref()
-            .map(|map| map.bar_room(style, self.size.1));
+        let bar = chart.heat.as_ref().map(|map| map.bar_room(style, self.size.1));
         let (bar, above) = bar.unwrap_or_default();
         side.right += bar;
         side.top += self.factor_room().max(above) + self.legend.height();
@@ -104,9 +88,7 @@ impl<'a> Prepared<'a> {
 
     /// Room above the frame for a power of ten.
     pub(super) fn factor_room(&self) -> f64 {
-        self.y_ticks
-            .exponent
-            .map_or(0.0, |_| 1.5 * self.style.small)
+        self.y_ticks.exponent.map_or(0.0, |_| 1.5 * self.style.small)
     }
 
     /// How far the outermost x tick labels reach beyond the frame.
@@ -132,10 +114,7 @@ pub(crate) fn x_scale(chart: &Chart, style: &ChartStyle) -> Scale {
     let (mut all, mut points) = (Extent::new(chart.x.log), Extent::new(chart.x.log));
     for series in &chart.series {
         add_x(&mut all, series);
-        if matches!(
-            series.kind,
-            SeriesKind::Points(_) | SeriesKind::LinePoints(_)
-        ) {
+        if matches!(series.kind, SeriesKind::Points(_) | SeriesKind::LinePoints(_)) {
             add_x(&mut points, series);
         }
     }
@@ -147,9 +126,7 @@ pub(crate) fn x_scale(chart: &Chart, style: &ChartStyle) -> Scale {
         return tight;
     };
     let near = |value: f64, edge: f64| {
-        tight
-            .share(value)
-            .is_some_and(|share| (share - edge).abs() < style.pad)
+        tight.share(value).is_some_and(|share| (share - edge).abs() < style.pad)
     };
     let lo = if near(first, 0.0) { airy.lo } else { tight.lo };
     let hi = if near(last, 1.0) { airy.hi } else { tight.hi };
@@ -182,11 +159,7 @@ fn y_scale(chart: &Chart, style: &ChartStyle) -> Scale {
     }
     // Maps and stacked areas fill their frame.
     let areas = !chart.series.is_empty() && chart.series.iter().all(Series::is_band);
-    let pad = if chart.heat.is_some() || areas {
-        0.0
-    } else {
-        1.5 * style.pad
-    };
+    let pad = if chart.heat.is_some() || areas { 0.0 } else { 1.5 * style.pad };
     chosen(&chart.y).unwrap_or_else(|| extent.scale(pad))
 }
 
@@ -216,11 +189,7 @@ impl LegendBox {
         let named = named.filter(|(_, s)| chart.legend == Legend::Auto && !s.name.is_empty());
         let entries = named.map(|(i, s)| (i, TextLine::new(&s.name, font).shrunk_to(room)));
         let entries: Vec<(usize, TextLine)> = entries.collect();
-        let mut legend = Self {
-            entries,
-            columns: 1,
-            font,
-        };
+        let mut legend = Self { entries, columns: 1, font };
         let gap = GAP * font;
         let most = ((widest + gap) / (legend.cell() + gap)).floor().max(1.0) as usize;
         let rows = legend.entries.len().div_ceil(most).max(1);
@@ -265,12 +234,8 @@ impl LegendBox {
             let (column, row) = (number % self.columns, number / self.columns);
             let left = left + 0.2 * self.font + column as f64 * (self.cell() + GAP * self.font);
             let y = top + (0.25 + (row as f64 + 0.5) * LEADING) * self.font;
-            let sample = Rect::sized(
-                left,
-                y - 0.4 * self.font,
-                SAMPLE * self.font,
-                0.8 * self.font,
-            );
+            let sample =
+                Rect::sized(left, y - 0.4 * self.font, SAMPLE * self.font, 0.8 * self.font);
             strokes::draw_sample(svg, chart, style, *index, &sample);
             let at = Point::new(left + (SAMPLE + 0.5) * self.font, y);
             name.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);

@@ -60,10 +60,7 @@ impl Chart {
     /// An empty chart with linear axes.
     #[must_use]
     pub fn new(x_label: &str, y_label: &str) -> Self {
-        let axis = |label: &str| Axis {
-            label: label.into(),
-            ..Axis::default()
-        };
+        let axis = |label: &str| Axis { label: label.into(), ..Axis::default() };
         Self {
             title: String::new(),
             x: axis(x_label),
@@ -139,11 +136,7 @@ impl Chart {
 
     fn reference(mut self, value: f64, label: &str, vertical: bool) -> Self {
         let label = label.into();
-        self.references.push(ReferenceLine {
-            value,
-            label,
-            vertical,
-        });
+        self.references.push(ReferenceLine { value, label, vertical });
         self
     }
 
@@ -261,10 +254,7 @@ pub fn case_look(case: &str, number: usize) -> (Colour, Marker) {
         Some("gear") => (Colour::BLUE, Marker::Square),
         Some("motor") => (Colour::VERMILION, Marker::Circle),
         // The palette has the four of above first.
-        _ => (
-            Colour::PALETTE[(number + 4) % Colour::PALETTE.len()],
-            Marker::of_index(number + 4),
-        ),
+        _ => (Colour::PALETTE[(number + 4) % Colour::PALETTE.len()], Marker::of_index(number + 4)),
     }
 }
 
@@ -416,24 +406,10 @@ pub(crate) struct ChartStyle {
 
 impl ChartStyle {
     /// Legible at the column width of a journal.
-    pub(crate) const JOURNAL: Self = Self {
-        small: 7.0,
-        label: 8.0,
-        tick: 4.0,
-        frame: 0.6,
-        marker: 2.1,
-        line: 1.0,
-        pad: 0.04,
-    };
+    pub(crate) const JOURNAL: Self =
+        Self { small: 7.0, label: 8.0, tick: 4.0, frame: 0.6, marker: 2.1, line: 1.0, pad: 0.04 };
 
     /// For a chart inside a chart.
-    pub(crate) const INSET: Self = Self {
-        small: 6.4,
-        label: 7.0,
-        tick: 2.6,
-        frame: 0.5,
-        marker: 1.4,
-        line: 0.8,
-        pad: 0.06,
-    };
+    pub(crate) const INSET: Self =
+        Self { small: 6.4, label: 7.0, tick: 2.6, frame: 0.5, marker: 1.4, line: 0.8, pad: 0.06 };
 }

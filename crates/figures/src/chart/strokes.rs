@@ -20,10 +20,7 @@ fn thinned(points: Vec<Point>) -> Vec<Point> {
     let runs = points.chunk_by(|a, b| column(a) == column(b));
     let by_y = |a: &(usize, &Point), b: &(usize, &Point)| a.1.y.total_cmp(&b.1.y);
     let kept = |run: &[Point]| {
-        let extremes = [
-            run.iter().enumerate().min_by(by_y),
-            run.iter().enumerate().max_by(by_y),
-        ];
+        let extremes = [run.iter().enumerate().min_by(by_y), run.iter().enumerate().max_by(by_y)];
         let extremes = extremes.into_iter().flatten().map(|(i, _)| i);
         let keep: BTreeSet<usize> = extremes.chain([0, run.len() - 1]).collect();
         keep.into_iter().map(|i| run[i]).collect::<Vec<_>>()
@@ -63,8 +60,7 @@ pub(super) fn pieces(plot: &Plot, series: &Series) -> Vec<Vec<Point>> {
 fn unbroken(points: impl Iterator<Item = Option<Point>>) -> Vec<Vec<Point>> {
     let points: Vec<Option<Point>> = points.collect();
     let runs = points.split(Option::is_none).filter(|run| !run.is_empty());
-    runs.map(|run| run.iter().copied().flatten().collect())
-        .collect()
+    runs.map(|run| run.iter().copied().flatten().collect()).collect()
 }
 
 /// Marker centres inside the frame.
@@ -80,9 +76,8 @@ fn band(plot: &Plot, series: &Series, upper: &[f64]) -> Vec<Vec<Point>> {
     let hold = |p: Point| Point::new(p.x.clamp(frame.x0, frame.x1), p.y.clamp(frame.y0, frame.y1));
     let held = |run: Vec<Point>| thinned(run).into_iter().map(hold).collect::<Vec<_>>();
     let edges = series.xy().zip(upper);
-    let edges: Vec<Option<(Point, Point)>> = edges
-        .map(|((x, low), high)| plot.at(x, low).zip(plot.at(x, *high)))
-        .collect();
+    let edges: Vec<Option<(Point, Point)>> =
+        edges.map(|((x, low), high)| plot.at(x, low).zip(plot.at(x, *high))).collect();
     let runs = edges.split(Option::is_none).filter(|run| !run.is_empty());
     let outline = |run: &[Option<(Point, Point)>]| {
         let (low, high): (Vec<Point>, Vec<Point>) = run.iter().copied().flatten().unzip();
@@ -107,18 +102,10 @@ pub(super) fn error_bars(plot: &Plot, series: &Series) -> Vec<(Point, [Option<Po
             continue;
         };
         if let (Some(below), Some(above)) = (series.y_error.0.get(i), series.y_error.1.get(i)) {
-            bars.push((
-                centre,
-                [end(x, y - below), end(x, y + above)],
-                Point::new(1.0, 0.0),
-            ));
+            bars.push((centre, [end(x, y - below), end(x, y + above)], Point::new(1.0, 0.0)));
         }
         if let Some(error) = series.x_error.get(i) {
-            bars.push((
-                centre,
-                [end(x - error, y), end(x + error, y)],
-                Point::new(0.0, 1.0),
-            ));
+            bars.push((centre, [end(x - error, y), end(x + error, y)], Point::new(0.0, 1.0)));
         }
     }
     bars
@@ -202,10 +189,7 @@ fn band_paint(colour: Colour) -> Paint {
 /// Stroke of a line series: those of automatic colour differ by pattern too.
 fn line_paint(chart: &Chart, style: &ChartStyle, index: usize) -> Paint {
     let series = &chart.series[index];
-    let before = chart.series[..index]
-        .iter()
-        .filter(|s| s.has_line())
-        .count();
+    let before = chart.series[..index].iter().filter(|s| s.has_line()).count();
     let automatic = match series.colour {
         None => Dash::of_index(before),
         Some(_) => Dash::Solid,
@@ -253,9 +237,9 @@ fn outline(path: &mut PathData, marker: Marker, c: Point, r: f64) {
         Marker::Diamond => {
             path.polygon(&[at(0.0, -1.3), at(1.1, 0.0), at(0.0, 1.3), at(-1.1, 0.0)])
         }
-        Marker::Cross => path
-            .segment(at(-0.9, -0.9), at(0.9, 0.9))
-            .segment(at(-0.9, 0.9), at(0.9, -0.9)),
+        Marker::Cross => {
+            path.segment(at(-0.9, -0.9), at(0.9, 0.9)).segment(at(-0.9, 0.9), at(0.9, -0.9))
+        }
     };
 }
 

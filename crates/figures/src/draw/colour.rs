@@ -58,11 +58,7 @@ impl Colour {
             let value = f64::from(a) + (f64::from(b) - f64::from(a)) * share.clamp(0.0, 1.0);
             value.round() as u8
         };
-        let (red, green, blue) = (
-            mix(self.0, other.0),
-            mix(self.1, other.1),
-            mix(self.2, other.2),
-        );
+        let (red, green, blue) = (mix(self.0, other.0), mix(self.1, other.1), mix(self.2, other.2));
         Self(red, green, blue)
     }
 }
@@ -142,11 +138,7 @@ fn linear_rgb(lightness: f64, chroma: f64, hue_deg: f64) -> [f64; 3] {
 fn encode(linear: [f64; 3]) -> Colour {
     let [r, g, b] = linear.map(|c| {
         let c = c.clamp(0.0, 1.0);
-        let s = if c <= 0.003_130_8 {
-            12.92 * c
-        } else {
-            1.055 * c.powf(1.0 / 2.4) - 0.055
-        };
+        let s = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
         (255.0 * s).round() as u8
     });
     Colour(r, g, b)

@@ -55,12 +55,7 @@ impl Margins {
 
 impl Rect {
     pub(crate) fn sized(x: f64, y: f64, width: f64, height: f64) -> Self {
-        Self {
-            x0: x,
-            y0: y,
-            x1: x + width.max(0.0),
-            y1: y + height.max(0.0),
-        }
+        Self { x0: x, y0: y, x1: x + width.max(0.0), y1: y + height.max(0.0) }
     }
 
     pub(crate) fn width(&self) -> f64 {
@@ -84,12 +79,7 @@ impl Rect {
 
     /// Grows by the same amount on all sides.
     pub(crate) fn grown(&self, by: f64) -> Self {
-        Self {
-            x0: self.x0 - by,
-            y0: self.y0 - by,
-            x1: self.x1 + by,
-            y1: self.y1 + by,
-        }
+        Self { x0: self.x0 - by, y0: self.y0 - by, x1: self.x1 + by, y1: self.y1 + by }
     }
 
     pub(crate) fn holds(&self, other: &Self) -> bool {
@@ -106,12 +96,8 @@ impl Rect {
 /// clipping), or nothing.
 pub(crate) fn clip_segment(rect: &Rect, a: Point, b: Point) -> Option<(Point, Point)> {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
-    let edges = [
-        (-dx, a.x - rect.x0),
-        (dx, rect.x1 - a.x),
-        (-dy, a.y - rect.y0),
-        (dy, rect.y1 - a.y),
-    ];
+    let edges =
+        [(-dx, a.x - rect.x0), (dx, rect.x1 - a.x), (-dy, a.y - rect.y0), (dy, rect.y1 - a.y)];
     let (mut t0, mut t1) = (0.0_f64, 1.0_f64);
     for (p, q) in edges {
         if p == 0.0 && q < 0.0 {

@@ -125,18 +125,12 @@ pub(crate) struct Paint {
 
 impl Paint {
     pub(crate) fn fill(colour: Colour) -> Self {
-        Self {
-            fill: Some(colour.to_string()),
-            ..Self::default()
-        }
+        Self { fill: Some(colour.to_string()), ..Self::default() }
     }
 
     /// Fills with a gradient made by [`Svg::gradient`].
     pub(crate) fn gradient(id: &str) -> Self {
-        Self {
-            fill: Some(format!("url(#{id})")),
-            ..Self::default()
-        }
+        Self { fill: Some(format!("url(#{id})")), ..Self::default() }
     }
 
     pub(crate) fn line(colour: Colour, width: f64) -> Self {
@@ -144,24 +138,13 @@ impl Paint {
     }
 
     pub(crate) fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
-        let stroke = Some(Stroke {
-            colour,
-            width,
-            dash,
-        });
-        Self {
-            stroke,
-            ..Self::default()
-        }
+        let stroke = Some(Stroke { colour, width, dash });
+        Self { stroke, ..Self::default() }
     }
 
     pub(crate) fn outlined(mut self, colour: Colour, width: f64) -> Self {
         let dash = &[];
-        self.stroke = Some(Stroke {
-            colour,
-            width,
-            dash,
-        });
+        self.stroke = Some(Stroke { colour, width, dash });
         self
     }
 
@@ -271,10 +254,7 @@ impl Svg {
             return id.clone();
         }
         let id = format!("b{}", self.gradients.len());
-        let (light, dark) = (
-            colour.mixed(Colour::WHITE, 0.75),
-            colour.mixed(Colour::BLACK, 0.3),
-        );
+        let (light, dark) = (colour.mixed(Colour::WHITE, 0.75), colour.mixed(Colour::BLACK, 0.3));
         let _ = writeln!(
             self.defs,
             "<radialGradient id=\"{id}\" cx=\"0.36\" cy=\"0.32\" r=\"0.72\">\
@@ -287,8 +267,7 @@ impl Svg {
 
     /// A PNG stretched over `rect`, its pixels kept sharp.
     pub(crate) fn image(&mut self, rect: &Rect, png: &[u8]) {
-        self.body
-            .push_str("<image preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\"");
+        self.body.push_str("<image preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\"");
         let (x, y, w, h) = (rect.x0, rect.y0, rect.width(), rect.height());
         for (name, value) in [("x", x), ("y", y), ("width", w), ("height", h)] {
             let _ = write!(self.body, " {name}=\"");
@@ -323,10 +302,7 @@ impl Svg {
     /// One glyph of an open text; its outline is stored once per document.
     pub(crate) fn glyph(&mut self, id: GlyphId, outline: impl FnOnce() -> String, transform: &str) {
         self.glyphs.entry(id).or_insert_with(outline);
-        let _ = write!(
-            self.body,
-            "<use xlink:href=\"#{id}\" transform=\"{transform}\"/>"
-        );
+        let _ = write!(self.body, "<use xlink:href=\"#{id}\" transform=\"{transform}\"/>");
     }
 
     /// The finished document of the given size.

@@ -70,17 +70,14 @@ impl Corner<'_> {
         let density = histogram(&self.samples[k], range, CELLS);
         let top = density.iter().copied().fold(0.0, f64::max);
         let step = (range.1 - range.0) / CELLS as f64;
-        let x: Vec<f64> = (0..CELLS)
-            .map(|i| range.0 + step * (i as f64 + 0.5))
-            .collect();
+        let x: Vec<f64> = (0..CELLS).map(|i| range.0 + step * (i as f64 + 0.5)).collect();
         let y: Vec<f64> = density.iter().map(|d| d / top).collect();
         let mut chart = self.empty(k, k, count, range).y_range(0.0, 1.15);
         chart.y.unlabelled = true;
         let [low, high] = [0.16, 0.84].map(|share| quantile(&self.samples[k], share));
         let inside = |x: &f64| low <= *x && *x <= high;
-        let shaded: Vec<f64> = (x.iter().zip(&y))
-            .map(|(x, y)| if inside(x) { *y } else { f64::NAN })
-            .collect();
+        let shaded: Vec<f64> =
+            (x.iter().zip(&y)).map(|(x, y)| if inside(x) { *y } else { f64::NAN }).collect();
         let [sampled, normal] = match k {
             0 => ["posterior", "covariance"],
             _ => [""; 2],
@@ -93,11 +90,7 @@ impl Corner<'_> {
                 Series::band("", &x, &vec![0.0; CELLS], &shaded)
                     .colour(Colour::BLUE.mixed(Colour::WHITE, 0.7)),
             )
-            .with(
-                Series::line(sampled, &x, &y)
-                    .colour(Colour::BLUE)
-                    .dash(Dash::Solid),
-            );
+            .with(Series::line(sampled, &x, &y).colour(Colour::BLUE).dash(Dash::Solid));
         match self.bell(k, &x) {
             Some(bell) => chart.with(by_covariance(normal, &x, &bell)),
             None => chart,
@@ -121,10 +114,7 @@ impl Corner<'_> {
         let rest = (entry(row, row)? - slope * slope).max(0.0).sqrt();
         let place = |step: i32| {
             let (sin, cos) = (TAU * f64::from(step) / 120.0).sin_cos();
-            (
-                x + radius * sd * cos,
-                y + radius * (slope * cos + rest * sin),
-            )
+            (x + radius * sd * cos, y + radius * (slope * cos + rest * sin))
         };
         Some((0..=120).map(place).unzip())
     }
@@ -156,29 +146,19 @@ impl Corner<'_> {
 }
 
 fn by_covariance(name: &str, x: &[f64], y: &[f64]) -> Series {
-    Series::line(name, x, y)
-        .colour(Colour::VERMILION)
-        .dash(Dash::Dashed)
-        .width(0.7)
+    Series::line(name, x, y).colour(Colour::VERMILION).dash(Dash::Dashed).width(0.7)
 }
 
 fn quantile(samples: &[f64], share: f64) -> f64 {
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     let place = share * sorted.len().saturating_sub(1) as f64;
-    sorted
-        .get(place.round() as usize)
-        .copied()
-        .unwrap_or(f64::NAN)
+    sorted.get(place.round() as usize).copied().unwrap_or(f64::NAN)
 }
 
 /// Where a parameter's panels begin and end.
 fn range(samples: &[f64]) -> (f64, f64) {
     let (from, to) = (quantile(samples, OUTSIDE), quantile(samples, 1.0 - OUTSIDE));
     let margin = 0.06 * (to - from);
-    if to > from {
-        (from - margin, to + margin)
-    } else {
-        (from - 1.0, from + 1.0)
-    }
+    if to > from { (from - margin, to + margin) } else { (from - 1.0, from + 1.0) }
 }

@@ -48,9 +48,7 @@ pub(super) fn joint(
         let columns: Vec<Vec<f64>> = (0..cells)
             .map(|i| smoothed(&rows.iter().map(|row| row[i]).collect::<Vec<f64>>()))
             .collect();
-        rows = (0..cells)
-            .map(|j| columns.iter().map(|column| column[j]).collect())
-            .collect();
+        rows = (0..cells).map(|j| columns.iter().map(|column| column[j]).collect()).collect();
     }
     Field { rows, x, y }
 }
@@ -114,15 +112,10 @@ impl Field {
         for j in 1..self.rows.len() {
             for i in 1..self.rows[j].len() {
                 let (left, low) = (i - 1, j - 1);
-                let edges = [
-                    (left, low, false),
-                    (i, low, true),
-                    (left, j, false),
-                    (left, low, true),
-                ];
-                let crossed: Vec<Edge> = (edges.into_iter())
-                    .filter(|edge| self.is_crossed(*edge, level))
-                    .collect();
+                let edges =
+                    [(left, low, false), (i, low, true), (left, j, false), (left, low, true)];
+                let crossed: Vec<Edge> =
+                    (edges.into_iter()).filter(|edge| self.is_crossed(*edge, level)).collect();
                 // Saddles: two lines, each about one corner.
                 all.extend(crossed.chunks_exact(2).map(|pair| (pair[0], pair[1])));
             }
@@ -131,11 +124,7 @@ impl Field {
     }
 
     fn ends(&self, (i, j, up): Edge) -> (f64, f64) {
-        let other = if up {
-            self.value(i, j + 1)
-        } else {
-            self.value(i + 1, j)
-        };
+        let other = if up { self.value(i, j + 1) } else { self.value(i + 1, j) };
         (self.value(i, j), other)
     }
 
@@ -154,10 +143,7 @@ impl Field {
             from + (to - from) * (cell + 0.5) / cells as f64
         };
         let columns = self.rows.first().map_or(0, Vec::len);
-        (
-            place(i as f64 + right, self.x, columns),
-            place(j as f64 + above, self.y, self.rows.len()),
-        )
+        (place(i as f64 + right, self.x, columns), place(j as f64 + above, self.y, self.rows.len()))
     }
 }
 

@@ -37,9 +37,8 @@ pub fn profile_figure(curves: &[ProfileCurve<'_>]) -> Figure {
         1 => Figure::single_column(height),
         _ => Figure::double_column(height).letters(),
     };
-    let figure = curves.iter().fold(empty.columns(columns), |figure, curve| {
-        figure.panel(curve.chart())
-    });
+    let figure =
+        curves.iter().fold(empty.columns(columns), |figure, curve| figure.panel(curve.chart()));
     figure.title("Profiles of chi-square").caption(
         "Solid, with symbols where it was computed: the least chi-square for each value of the parameter, \
          all others re-optimised. Dashed: the parabola of the covariance. Where both part, the \
@@ -55,22 +54,14 @@ impl ProfileCurve<'_> {
             chart = chart.h_line(*level, text);
         }
         let (x, y) = self.between();
-        let profile = Series::line("", &x, &y)
-            .colour(Colour::BLUE)
-            .dash(Dash::Solid);
+        let profile = Series::line("", &x, &y).colour(Colour::BLUE).dash(Dash::Solid);
         let points = Series::points("profile", self.values, self.rise);
-        let mut chart = chart
-            .with(profile)
-            .with(points.colour(Colour::BLUE).marker(Marker::Circle));
+        let mut chart =
+            chart.with(profile).with(points.colour(Colour::BLUE).marker(Marker::Circle));
         if let Some(error) = self.standard_error.filter(|e| *e > 0.0 && e.is_finite()) {
             let reach = error * (1.3 * top).sqrt();
-            let x: Vec<f64> = (-50..=50)
-                .map(|i| self.best + reach * f64::from(i) / 50.0)
-                .collect();
-            let y: Vec<f64> = x
-                .iter()
-                .map(|x| ((x - self.best) / error).powi(2))
-                .collect();
+            let x: Vec<f64> = (-50..=50).map(|i| self.best + reach * f64::from(i) / 50.0).collect();
+            let y: Vec<f64> = x.iter().map(|x| ((x - self.best) / error).powi(2)).collect();
             let parabola = Series::line("covariance", &x, &y);
             chart = chart.with(parabola.colour(Colour::VERMILION).dash(Dash::Dashed));
         }
@@ -131,9 +122,7 @@ impl SingularValues<'_> {
     }
 
     fn empty(&self, y_label: &str) -> Chart {
-        Chart::new("Direction", y_label)
-            .x_whole()
-            .x_range(0.5, self.values.len() as f64 + 0.5)
+        Chart::new("Direction", y_label).x_whole().x_range(0.5, self.values.len() as f64 + 0.5)
     }
 
     fn sizes(&self) -> Chart {
@@ -153,25 +142,19 @@ impl SingularValues<'_> {
 
     fn parts(&self) -> Chart {
         let count = self.names.len();
-        let chart = self
-            .empty("Part in the direction")
-            .y_range(-1.1, 1.1)
-            .h_line(0.0, "");
-        self.names
-            .iter()
-            .enumerate()
-            .fold(chart, |chart, (k, name)| {
-                let part = |direction: &Vec<f64>| direction.get(k).copied().unwrap_or(f64::NAN);
-                let parts: Vec<f64> = self.directions.iter().map(part).collect();
-                // Beside each other, so that equal parts are all seen.
-                let aside = 0.5 * ((k as f64 + 0.5) / count as f64 - 0.5);
-                let x: Vec<f64> = self.numbers().iter().map(|n| n + aside).collect();
-                let points = Series::points(name, &x, &parts);
-                chart.with(
-                    points
-                        .colour(Colour::PALETTE[k % Colour::PALETTE.len()])
-                        .marker(Marker::of_index(k)),
-                )
-            })
+        let chart = self.empty("Part in the direction").y_range(-1.1, 1.1).h_line(0.0, "");
+        self.names.iter().enumerate().fold(chart, |chart, (k, name)| {
+            let part = |direction: &Vec<f64>| direction.get(k).copied().unwrap_or(f64::NAN);
+            let parts: Vec<f64> = self.directions.iter().map(part).collect();
+            // Beside each other, so that equal parts are all seen.
+            let aside = 0.5 * ((k as f64 + 0.5) / count as f64 - 0.5);
+            let x: Vec<f64> = self.numbers().iter().map(|n| n + aside).collect();
+            let points = Series::points(name, &x, &parts);
+            chart.with(
+                points
+                    .colour(Colour::PALETTE[k % Colour::PALETTE.len()])
+                    .marker(Marker::of_index(k)),
+            )
+        })
     }
 }

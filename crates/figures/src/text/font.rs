@@ -76,10 +76,7 @@ impl GlyphId {
     /// The glyph of a character; an empty box if the face has none.
     pub(crate) fn of(style: Face, c: char) -> Self {
         let found = face(style).charmap().map(c);
-        Self {
-            style,
-            index: found.map_or(0, |g| g.to_u32()),
-        }
+        Self { style, index: found.map_or(0, |g| g.to_u32()) }
     }
 
     /// Advance width in em.

@@ -35,12 +35,8 @@ pub(crate) const SYMBOLS: &[(&str, char)] = &[
 
 /// Splits markup into runs; malformed markup is shown as it was typed.
 pub(crate) fn parse(source: &str) -> Vec<TextRun> {
-    let mut parser = Parser {
-        rest: source.chars().peekable(),
-        math: false,
-        upright: false,
-        runs: Vec::new(),
-    };
+    let mut parser =
+        Parser { rest: source.chars().peekable(), math: false, upright: false, runs: Vec::new() };
     while let Some(c) = parser.rest.next() {
         parser.take(c, Script::Base);
     }
@@ -72,11 +68,7 @@ impl Parser<'_> {
         let style = if italic { Face::Italic } else { Face::Regular };
         match self.runs.last_mut() {
             Some(run) if run.style == style && run.script == script => run.text.push(c),
-            _ => self.runs.push(TextRun {
-                text: c.to_string(),
-                style,
-                script,
-            }),
+            _ => self.runs.push(TextRun { text: c.to_string(), style, script }),
         }
     }
 
@@ -114,9 +106,7 @@ impl Parser<'_> {
         }
         match SYMBOLS.iter().find(|(n, _)| *n == name) {
             Some((_, symbol)) => self.push(*symbol, script),
-            None => format!("\\{name}")
-                .chars()
-                .for_each(|c| self.push(c, script)),
+            None => format!("\\{name}").chars().for_each(|c| self.push(c, script)),
         }
     }
 

@@ -83,11 +83,7 @@ impl TextLine {
 
     /// Literal bold text, for panel letters.
     pub(crate) fn bold(text: &str, size: f64) -> Self {
-        let run = TextRun {
-            text: text.into(),
-            style: Face::Bold,
-            script: Script::Base,
-        };
+        let run = TextRun { text: text.into(), style: Face::Bold, script: Script::Base };
         Self::from_runs(&[run], size)
     }
 
@@ -132,13 +128,7 @@ impl TextLine {
         };
         self.top_em = self.top_em.max(up + CAP_HEIGHT * scale);
         self.bottom_em = self.bottom_em.max(DESCENT * scale - up);
-        let span = Span {
-            text: run.text.clone(),
-            style: run.style,
-            x: start,
-            up,
-            scale,
-        };
+        let span = Span { text: run.text.clone(), style: run.style, x: start, up, scale };
         let end = span.end();
         self.plain.push_str(&run.text);
         self.spans.push(span);
@@ -186,22 +176,13 @@ impl TextLine {
             self = Self::from_runs(&self.runs, size);
         }
         // What rounding leaves over is no reason to cut.
-        if self.width() > width * (1.0 + 1e-3) {
-            self.cut(width)
-        } else {
-            self
-        }
+        if self.width() > width * (1.0 + 1e-3) { self.cut(width) } else { self }
     }
 
     /// As much of the line as fits, and an ellipsis.
     fn cut(mut self, width: f64) -> Self {
-        let mut mark = Span {
-            text: ELLIPSIS.to_string(),
-            style: Face::Regular,
-            x: 0.0,
-            up: 0.0,
-            scale: 1.0,
-        };
+        let mut mark =
+            Span { text: ELLIPSIS.to_string(), style: Face::Regular, x: 0.0, up: 0.0, scale: 1.0 };
         let room = width / self.size - mark.end();
         for span in &mut self.spans {
             while !span.text.is_empty() && (span.end() > room || span.text.ends_with(' ')) {
@@ -333,10 +314,7 @@ pub(crate) fn wrap(markup: &str, size: f64, width: f64, max_lines: usize) -> Vec
             last.push('…');
         }
     }
-    lines
-        .iter()
-        .map(|l| TextLine::new(l, size).shrunk_to(width))
-        .collect()
+    lines.iter().map(|l| TextLine::new(l, size).shrunk_to(width)).collect()
 }
 
 /// Words of markup; formulas between dollar signs and no-break spaces hold together.

@@ -28,10 +28,7 @@ fn smallest(node: Node<'_, '_>, scale: f64) -> f64 {
     match node.tag_name().name() {
         "use" => scale,
         "defs" => f64::INFINITY,
-        _ => node
-            .children()
-            .map(|child| smallest(child, scale))
-            .fold(f64::INFINITY, f64::min),
+        _ => node.children().map(|child| smallest(child, scale)).fold(f64::INFINITY, f64::min),
     }
 }
 
@@ -41,9 +38,7 @@ fn scale_of(transform: &str) -> f64 {
     let least = scales.map(|rest| {
         let inside = rest.split(')').next().unwrap_or_default();
         let factors = inside.split_whitespace();
-        factors
-            .map(|f| number(f).abs())
-            .fold(f64::INFINITY, f64::min)
+        factors.map(|f| number(f).abs()).fold(f64::INFINITY, f64::min)
     });
     least.product()
 }

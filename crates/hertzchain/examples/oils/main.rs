@@ -55,9 +55,7 @@ const SHOTS: u64 = 20;
 type Said = [BTreeMap<String, u64>; LIQUIDS.len()];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let trials: u64 = std::env::args()
-        .nth(1)
-        .map_or(Ok(10), |text| text.parse())?;
+    let trials: u64 = std::env::args().nth(1).map_or(Ok(10), |text| text.parse())?;
     let text = rig();
     let mut said: [Said; 2] = Default::default();
     let own = std::env::temp_dir().join(format!("hertzchain-oils-{}", std::process::id()));
@@ -120,13 +118,7 @@ fn run_gauge(text: &str, table: &str, said: &mut [Said; 2]) -> Result<(), Box<dy
             Data::parse("speeds.csv", table, &selection)
         };
         for (liquid, said) in LIQUIDS.iter().zip(said) {
-            let chains = Chains {
-                dry: &dry,
-                wet: &wet,
-                free: &free,
-                own: &[],
-                accuracy: 1e-5,
-            };
+            let chains = Chains { dry: &dry, wet: &wet, free: &free, own: &[], accuracy: 1e-5 };
             let gauge = Gauge::new(&chains, data("dry")?, data(liquid)?)?;
             let verdict = gauge.verdict(&known_oils()?)?;
             let names: Vec<&str> = verdict.allowed().map(|found| found.oil.as_str()).collect();

@@ -143,10 +143,8 @@ fn of_mean(shots: &[&Evaluated], time: usize, curve: Curve) -> Option<Speed> {
         .collect();
     let held_s = held_s.iter().sum::<f64>() / held_s.len() as f64;
     let of_speed_s = EXPONENT * held_s * speed_m_s.sigma / speed_m_s.value;
-    let departure_s = Estimate {
-        value: mean_s.value - held_s,
-        sigma: mean_s.sigma.hypot(of_speed_s),
-    };
+    let departure_s =
+        Estimate { value: mean_s.value - held_s, sigma: mean_s.sigma.hypot(of_speed_s) };
     Some(Speed {
         speed_m_s: shots.first()?.programmed_m_s(),
         count: summary.count,
@@ -247,9 +245,7 @@ fn held(
     state.strike(&system, speed_m_s);
     let shot = system.from_state(&state)?;
     let mut passages = Passages::new(experiment.sensor_bead(), shot.beads(), true);
-    let method = DormandPrince {
-        tolerance: TOLERANCE,
-    };
+    let method = DormandPrince { tolerance: TOLERANCE };
     let limits = Limits::until(LONGEST_S);
     wave::run(&shot, &method, limits, &mut [&mut passages])?;
     let (incident, wall, reflected) = passages.peaks()?;

@@ -138,14 +138,11 @@ fn largest_s(shots: &[&Evaluated], time: usize) -> f64 {
     speeds.dedup();
     let of_speed = |speed: &f64| {
         let own = shots.iter().filter(|shot| shot.programmed_m_s() == *speed);
-        let errors: Vec<f64> = own
-            .filter_map(|shot| Some(shot.error(time)?.value))
-            .collect();
+        let errors: Vec<f64> = own.filter_map(|shot| Some(shot.error(time)?.value)).collect();
         median(&errors)
     };
     let off = speeds.iter().filter_map(of_speed);
-    off.max_by(|a, b| a.abs().total_cmp(&b.abs()))
-        .unwrap_or(f64::NAN)
+    off.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(f64::NAN)
 }
 
 /// A share with its binomial error, in percent.
@@ -157,18 +154,9 @@ fn share(of: Coverage) -> String {
 /// Means a speed against the model's curve, and against the shots' own times.
 fn against_model(shots: &[Evaluated], cases: &[&str]) {
     let curves = [
-        (
-            "the model's of the chain in equilibrium",
-            evaluated::COMPACT,
-        ),
-        (
-            "the model's of the chain with each shot's own gaps and loads",
-            evaluated::HELD,
-        ),
-        (
-            "the recorded shots' own, taken to the measured speed",
-            evaluated::OWN,
-        ),
+        ("the model's of the chain in equilibrium", evaluated::COMPACT),
+        ("the model's of the chain with each shot's own gaps and loads", evaluated::HELD),
+        ("the recorded shots' own, taken to the measured speed", evaluated::OWN),
     ];
     for (what, curve) in curves {
         println!("\nMeasured times less {what}, means a speed\n");
@@ -195,10 +183,7 @@ fn against_model(shots: &[Evaluated], cases: &[&str]) {
 /// stated errors, and how many speeds are within these.
 fn reported(rows: &[Speed]) -> String {
     let evaluated = agreement(rows).map_or(String::new(), |c| {
-        format!(
-            "chi-square {:.1} of {}, p = {:.2}",
-            c.value, c.freedom, c.probability
-        )
+        format!("chi-square {:.1} of {}, p = {:.2}", c.value, c.freedom, c.probability)
     });
     let pulls = rows.iter().map(|row| row.departure_s);
     let pulls: Vec<f64> = pulls.map(|of| (of.value / of.sigma).abs()).collect();

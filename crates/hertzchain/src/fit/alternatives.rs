@@ -56,17 +56,9 @@ pub(super) fn alternatives(
     if arguments.against.is_empty() {
         return Ok(None);
     }
-    let name = format!(
-        "{} ({})",
-        problem.model().experiment().name(),
-        arguments.freed.free.join(", ")
-    );
-    let mut all = vec![alternative(
-        name,
-        (problem, kept),
-        own.clone(),
-        arguments.seed,
-    )?];
+    let name =
+        format!("{} ({})", problem.model().experiment().name(), arguments.freed.free.join(", "));
+    let mut all = vec![alternative(name, (problem, kept), own.clone(), arguments.seed)?];
     let mut lost = Vec::new();
     for against in &arguments.against {
         match other(against, problem, arguments)? {
@@ -86,11 +78,7 @@ pub(super) fn alternatives(
         1 => None,
         _ => Some(compare(&compared).map_err(user)?),
     };
-    Ok(Some(AlternativeModels {
-        all,
-        lost,
-        comparison,
-    }))
+    Ok(Some(AlternativeModels { all, lost, comparison }))
 }
 
 fn other(
@@ -128,11 +116,7 @@ fn attempted(
         }));
     }
     let alternative = alternative(name.clone(), (&posed, &posed), fit, arguments.seed)?;
-    Ok(Ok(AlternativeModel {
-        without,
-        kept: reported,
-        ..alternative
-    }))
+    Ok(Ok(AlternativeModel { without, kept: reported, ..alternative }))
 }
 
 /// The same data against another model, in which everything is set and known that is
@@ -185,12 +169,9 @@ fn renamed(known: &Freed, own: &Experiment, free: &[String], alternative: &Exper
         Some(format!("{}{}", same.next()?, &given.name[number.len()..]))
     };
     let all = |given: &[Assignment]| {
-        let given = given.iter().filter_map(|one| {
-            Some(Assignment {
-                name: name(one)?,
-                text: one.text.clone(),
-            })
-        });
+        let given = given
+            .iter()
+            .filter_map(|one| Some(Assignment { name: name(one)?, text: one.text.clone() }));
         given.collect()
     };
     Freed {
@@ -216,11 +197,8 @@ fn is_of(name: &str, number: &str) -> bool {
 /// What is said of parameters that there are.
 fn about(freed: Freed, parameters: &[&str]) -> Freed {
     let known = |given: Vec<Assignment>| -> Vec<Assignment> {
-        let is_known = |one: &Assignment| {
-            parameters
-                .iter()
-                .any(|parameter| is_meant(&one.name, parameter))
-        };
+        let is_known =
+            |one: &Assignment| parameters.iter().any(|parameter| is_meant(&one.name, parameter));
         given.into_iter().filter(is_known).collect()
     };
     Freed {
@@ -243,23 +221,13 @@ fn alternative(
 ) -> Result<AlternativeModel, Failure> {
     // What was measured at one speed is left out together.
     let groups = problem.measured().into_iter().map(|(row, _)| row).collect();
-    let how = Folding {
-        groups,
-        parts: Some(PARTS.min(problem.data().rows.len())),
-        seed,
-    };
+    let how = Folding { groups, parts: Some(PARTS.min(problem.data().rows.len())), seed };
     let foretells = enough(problem.data().rows.len(), fit.point.len())
         .then(|| cross_validate(kept, &fit, &how))
         .transpose();
     wanted()?;
     let foretells = foretells.map_err(|error| Failure::User(format!("{name}: {error}")))?;
-    Ok(AlternativeModel {
-        name,
-        fit,
-        foretells,
-        without: Vec::new(),
-        kept: Vec::new(),
-    })
+    Ok(AlternativeModel { name, fit, foretells, without: Vec::new(), kept: Vec::new() })
 }
 
 /// Whether more speeds are left than numbers are free when the largest part is left out. A

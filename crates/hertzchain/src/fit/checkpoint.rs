@@ -24,10 +24,8 @@ const MAY_DIFFER: &str = "steps";
 /// # Errors
 /// Options that differ from those of the run before, by name; a folder that can't be used.
 pub(super) fn check_options(arguments: &Arguments) -> Result<(), Failure> {
-    let Some(out) = arguments
-        .out
-        .as_deref()
-        .filter(|_| arguments.method == options::Method::Posterior)
+    let Some(out) =
+        arguments.out.as_deref().filter(|_| arguments.method == options::Method::Posterior)
     else {
         return Ok(());
     };
@@ -96,11 +94,7 @@ pub(super) fn started(
     let path = arguments.out.as_deref().map(|out| out.join(CHAIN));
     let Some(path) = path.filter(|path| arguments.resume && path.exists()) else {
         let walkers = WALKERS.max(4 * fit.point.len());
-        let how = Sampling {
-            walkers,
-            seed: arguments.seed,
-            ..Sampling::default()
-        };
+        let how = Sampling { walkers, seed: arguments.seed, ..Sampling::default() };
         return Chain::start(problem, fit, covariance, &how).map_err(user);
     };
     let unread = |error: &dyn std::fmt::Display| {

@@ -84,11 +84,7 @@ fn limit(found: &Profile, is_above: bool) -> Option<Limit> {
         false => interval.lower,
     });
     let ends: Vec<End> = ends.collect();
-    Some(Limit {
-        parameter: found.parameter,
-        is_above,
-        ends: ends.try_into().ok()?,
-    })
+    Some(Limit { parameter: found.parameter, is_above, ends: ends.try_into().ok()? })
 }
 
 impl Limit {

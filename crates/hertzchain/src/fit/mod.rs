@@ -87,9 +87,7 @@ impl Inferred {
     /// Minima of other starts that fit as well, and how many starts came to each.
     #[must_use]
     pub fn other_minima(&self) -> Vec<(&Started, usize)> {
-        let sd: Vec<f64> = (0..self.parameters.len())
-            .map(|at| self.standard_error(at))
-            .collect();
+        let sd: Vec<f64> = (0..self.parameters.len()).map(|at| self.standard_error(at)).collect();
         self.fit.other_minima(&sd)
     }
 
@@ -117,10 +115,7 @@ impl FitResult {
     pub fn pair_warning(&self) -> Option<String> {
         let numbers = self.problem.model().numbers().as_slice();
         let of = |number: &FreeNumber, short: &str| {
-            let (owner, name) = number
-                .name()
-                .rsplit_once('.')
-                .unwrap_or(("", number.name()));
+            let (owner, name) = number.name().rsplit_once('.').unwrap_or(("", number.name()));
             (name == short).then(|| owner.to_owned())
         };
         let owners: Vec<String> = numbers.iter().filter_map(|n| of(n, "K")).collect();
@@ -128,10 +123,7 @@ impl FitResult {
         let relaxation = numbers.iter().find(pair)?;
         let data = self.problem.data();
         let pairs = relaxation.parameter_count(data.rows.len());
-        let ratios = [
-            Observable::WallOverPassing,
-            Observable::ReturningOverPassing,
-        ];
+        let ratios = [Observable::WallOverPassing, Observable::ReturningOverPassing];
         let times_alone = !ratios.iter().any(|of| data.has(*of));
         let few = times_alone && data.value_count() <= 2 * pairs;
         (few && self.inferred.fit.starts.len() == 1).then(|| {
@@ -261,10 +253,7 @@ pub fn fit(
     let experiment = inference::in_case(experiment.clone(), &data.case)?;
     let experiment = inference::changed(experiment, &options.modelled.set)?;
     let model = inference::model(&experiment, &options.modelled, &options.freed)?;
-    fit_result(
-        inference::problem(model, data.clone(), &options.freed)?,
-        options,
-    )
+    fit_result(inference::problem(model, data.clone(), &options.freed)?, options)
 }
 
 /// Fits a curve, determines the uncertainty as the method asks, and compares with
@@ -307,13 +296,8 @@ pub fn fit_from_other_starts(
     validation::of_table(arguments)?;
     let fit = best_of_starts(computed, 0, &asked(arguments))?;
     let covariance = Covariance::new(computed.parameters(), &fit);
-    let more = more::more_of(
-        computed,
-        computed,
-        (&fit, &covariance),
-        Curves::Computed(None),
-        arguments,
-    )?;
+    let more =
+        more::more_of(computed, computed, (&fit, &covariance), Curves::Computed(None), arguments)?;
     let found = concluded(&problem, computed, (fit, covariance, more), arguments)?;
     reported(problem, found)
 }

@@ -57,10 +57,9 @@ pub(super) fn more(
             let curves = Curves::Interpolated(surrogate.error, speeds_m_s);
             return more_of(&surrogate, problem, found, curves, arguments);
         }
-        Ok(surrogate) => format!(
-            "interpolated ones would be off by {:.2} standard errors",
-            surrogate.error
-        ),
+        Ok(surrogate) => {
+            format!("interpolated ones would be off by {:.2} standard errors", surrogate.error)
+        }
         Err(error) => error.to_string(),
     };
     wanted()?;
@@ -91,17 +90,11 @@ pub(super) fn more_of(
         Method::Posterior => {
             let mut chain = started(problem, (fit, covariance), arguments)?;
             let mut saving = Saving::new(arguments);
-            let posterior = chain.lead(
-                problem,
-                &Requirements::default(),
-                arguments.steps,
-                &mut |chain| saving.seen(chain),
-            )?;
-            Ok(More::Sampled(Box::new(Sampled {
-                chain,
-                posterior,
-                curves,
-            })))
+            let posterior =
+                chain.lead(problem, &Requirements::default(), arguments.steps, &mut |chain| {
+                    saving.seen(chain)
+                })?;
+            Ok(More::Sampled(Box::new(Sampled { chain, posterior, curves })))
         }
     }
 }

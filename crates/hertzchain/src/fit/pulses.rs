@@ -68,11 +68,8 @@ fn with_filter(experiment: &Experiment, arguments: &Arguments) -> Result<Experim
     let recorded = &arguments.recorded;
     let name = |value: Option<Filter>| value.map(Filter::names);
     let (order, kind) = name(recorded.filter).unzip();
-    let changed = experiment.with_low_pass(
-        recorded.low_pass.map(|corner| corner.0),
-        order,
-        kind.flatten(),
-    );
+    let changed =
+        experiment.with_low_pass(recorded.low_pass.map(|corner| corner.0), order, kind.flatten());
     changed.map_err(user)
 }
 
@@ -81,11 +78,7 @@ pub const REPORTED: usize = 5;
 
 /// An error, and what was refused before it.
 fn none_left(error: &dyn std::fmt::Display, refused: &[String]) -> Failure {
-    let lines: Vec<String> = refused
-        .iter()
-        .take(REPORTED)
-        .map(|r| format!("\n  {r}"))
-        .collect();
+    let lines: Vec<String> = refused.iter().take(REPORTED).map(|r| format!("\n  {r}")).collect();
     Failure::User(format!(
         "{error}{}\n(A table of curves, which is no record, begins with a line that names its columns, speed_m_s among them.)",
         lines.concat()
@@ -116,9 +109,7 @@ fn records(
                 }
             };
             let asked = arguments.measured.case.as_deref();
-            let listed = reported
-                .as_ref()
-                .and_then(|list| list.case(&record.file, record.shot));
+            let listed = reported.as_ref().and_then(|list| list.case(&record.file, record.shot));
             let own = listed.or(record.case.as_deref());
             if asked.is_some_and(|case| own.is_some_and(|own| own != case)) {
                 continue;
@@ -150,9 +141,7 @@ fn speed(
     let usual = experiment.campaign().photogate.error_m_s;
     Some(Estimate {
         value,
-        sigma: error
-            .or(arguments.measured.speed_error.map(|error| error.0))
-            .unwrap_or(usual),
+        sigma: error.or(arguments.measured.speed_error.map(|error| error.0)).unwrap_or(usual),
     })
 }
 
@@ -161,20 +150,14 @@ fn spread(records: Vec<Pulses>, most: usize) -> Vec<Pulses> {
     let count = records.len();
     let kept = |at: &usize| at * most / count.max(1) != (at + 1) * most / count.max(1);
     let all = records.into_iter().enumerate();
-    all.filter(|(at, _)| count <= most || kept(at))
-        .map(|(_, r)| r)
-        .collect()
+    all.filter(|(at, _)| count <= most || kept(at)).map(|(_, r)| r).collect()
 }
 
 /// An amplifier's filters.
 fn respond() -> Respond {
     Respond::new(|numbers, signal, interval_s| {
-        let plain = Numbers {
-            sensitivity_c_n: 1.0,
-            wall_sensitivity_c_n: 1.0,
-            gain_v_c: 1.0,
-            ..*numbers
-        };
+        let plain =
+            Numbers { sensitivity_c_n: 1.0, wall_sensitivity_c_n: 1.0, gain_v_c: 1.0, ..*numbers };
         let force_n = |at: usize| [signal.get(at).copied().unwrap_or_default(), 0.0];
         Amplifier::new(&plain, interval_s).follow(signal.len(), force_n)
     })
@@ -219,11 +202,7 @@ fn attempted(
         covariance,
         fit,
     };
-    Ok(Pulsed {
-        problem,
-        inferred: found,
-        refused,
-    })
+    Ok(Pulsed { problem, inferred: found, refused })
 }
 
 impl Pulsed {
@@ -299,15 +278,8 @@ pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
     let all = records.flat_map(|(at, record)| {
         (0..record.means_v.len()).map(move |channel| {
             let point = &fit_result.inferred.fit.point;
-            let columns = fit_result
-                .problem
-                .picture(point, at, channel)
-                .map_err(user)?;
-            Ok(Shown {
-                record,
-                channel,
-                columns,
-            })
+            let columns = fit_result.problem.picture(point, at, channel).map_err(user)?;
+            Ok(Shown { record, channel, columns })
         })
     });
     all.collect()
@@ -317,12 +289,7 @@ pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
 #[must_use]
 pub fn pulses_csv(shown: &[Shown<'_>]) -> String {
     let mut text = "source,channel,time_s,measured_V,error_V,fitted_V\n".to_owned();
-    for Shown {
-        record,
-        channel,
-        columns: [times, measured, model],
-    } in shown
-    {
+    for Shown { record, channel, columns: [times, measured, model] } in shown {
         let source = record.source.replace('"', "\"\"");
         for (at, time) in times.iter().enumerate() {
             let cells = [*time, measured[at], record.sigma_v[*channel], model[at]].map(cell);

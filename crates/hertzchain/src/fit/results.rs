@@ -139,10 +139,7 @@ fn prior(prior: Prior) -> Value {
 fn correlations(fit_result: &Inferred) -> Value {
     let count = fit_result.fit.point.len();
     let row = |i: usize| (0..count).map(move |j| fit_result.covariance.correlation(i, j));
-    (0..count)
-        .map(|i| row(i).collect::<Vec<_>>())
-        .collect::<Vec<_>>()
-        .into()
+    (0..count).map(|i| row(i).collect::<Vec<_>>()).collect::<Vec<_>>().into()
 }
 
 fn end(end: End) -> Value {
@@ -269,8 +266,5 @@ pub fn rows_json(fit_result: &FitResult) -> Value {
             "residual": residual,
         })
     };
-    measured
-        .zip(&fit_result.inferred.fit.residuals)
-        .map(one)
-        .collect()
+    measured.zip(&fit_result.inferred.fit.residuals).map(one).collect()
 }

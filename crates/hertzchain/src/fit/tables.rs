@@ -62,27 +62,13 @@ fn summary(fit_result: &Inferred) -> String {
         ("probability", chi_square.map(|c| c.probability).into()),
         ("runs", runs.map(|r| r.count).into()),
         ("runs_expected", runs.map(|r| r.expected).into()),
-        (
-            "runs_probability_fewer",
-            runs.map(|r| r.probability_fewer).into(),
-        ),
-        (
-            "runs_probability_more",
-            runs.map(|r| r.probability_more).into(),
-        ),
-        (
-            "jacobian_disagreement",
-            fit.jacobian.worst_disagreement().into(),
-        ),
-        (
-            "singular_value_floor",
-            fit_result.identifiability.floor.into(),
-        ),
+        ("runs_probability_fewer", runs.map(|r| r.probability_fewer).into()),
+        ("runs_probability_more", runs.map(|r| r.probability_more).into()),
+        ("jacobian_disagreement", fit.jacobian.worst_disagreement().into()),
+        ("singular_value_floor", fit_result.identifiability.floor.into()),
         (
             "combinations_determined",
-            (fit.ending.converged())
-                .then(|| fit_result.identifiability.determined())
-                .into(),
+            (fit.ending.converged()).then(|| fit_result.identifiability.determined()).into(),
         ),
     ];
     let line = |(name, value): (&str, Cell)| [name.into(), value];
@@ -111,9 +97,7 @@ fn parameters(fit_result: &Inferred) -> String {
         ]
     };
     let table = Csv::new(titles.split(','));
-    table
-        .with_all(fit_result.parameters.iter().enumerate(), line)
-        .text()
+    table.with_all(fit_result.parameters.iter().enumerate(), line).text()
 }
 
 /// One line a singular value, with the combination of scaled parameters it belongs to.
@@ -123,14 +107,10 @@ fn singular_values(fit_result: &Inferred, names: &[&str]) -> String {
     let line = |(at, value): (usize, &f64)| {
         let cells = [Cell::from(*value), (at < found.determined()).into()].into_iter();
         let direction = found.directions[at].iter();
-        cells
-            .chain(direction.map(|share| Cell::from(*share)))
-            .collect::<Vec<_>>()
+        cells.chain(direction.map(|share| Cell::from(*share))).collect::<Vec<_>>()
     };
     let table = Csv::new(titles.chain(names.iter().copied()));
-    table
-        .with_all(found.singular_values.iter().enumerate(), line)
-        .text()
+    table.with_all(found.singular_values.iter().enumerate(), line).text()
 }
 
 /// One line a start: where it came to.
@@ -145,9 +125,7 @@ fn starts(fit_result: &Inferred) -> String {
     let line = |start: &hertzchain_infer::Started| {
         let cells = [Cell::from(start.cost), start.iterations.into()].into_iter();
         let points = start.start.iter().chain(&start.point);
-        cells
-            .chain(points.map(|value| Cell::from(*value)))
-            .collect::<Vec<_>>()
+        cells.chain(points.map(|value| Cell::from(*value))).collect::<Vec<_>>()
     };
     table.with_all(&fit_result.fit.starts, line).text()
 }
@@ -159,16 +137,9 @@ fn profiles(parameters: &[Parameter], profiles: &[Profile]) -> String {
         points.map(move |(value, rise)| (&parameters[profile.parameter], *value, *rise))
     });
     let line = |(of, value, rise): (&Parameter, f64, f64)| -> [Cell; 4] {
-        [
-            of.name.clone().into(),
-            of.unit.clone().into(),
-            value.into(),
-            rise.into(),
-        ]
+        [of.name.clone().into(), of.unit.clone().into(), value.into(), rise.into()]
     };
-    Csv::new(["name", "unit", "value", "chi_square_rise"])
-        .with_all(lines, line)
-        .text()
+    Csv::new(["name", "unit", "value", "chi_square_rise"]).with_all(lines, line).text()
 }
 
 /// One line an interval of a profile; an end that the data do not give says what
@@ -210,18 +181,10 @@ fn sampled_tables(parameters: &[Parameter], sampled: &Sampled) -> Vec<Table> {
         return Vec::new();
     };
     let count = posterior.samples.first().map_or(0, Vec::len);
-    let line = |at: usize| {
-        posterior
-            .samples
-            .iter()
-            .map(move |of| Cell::from(of[at]))
-            .collect::<Vec<_>>()
-    };
+    let line =
+        |at: usize| posterior.samples.iter().map(move |of| Cell::from(of[at])).collect::<Vec<_>>();
     let samples = Csv::new(parameters.iter().map(Parameter::title)).with_all(0..count, line);
-    vec![
-        ("posterior.csv", posterior_table(parameters, posterior)),
-        ("samples.csv", samples.text()),
-    ]
+    vec![("posterior.csv", posterior_table(parameters, posterior)), ("samples.csv", samples.text())]
 }
 
 fn posterior_table(parameters: &[Parameter], posterior: &Posterior) -> String {
@@ -245,9 +208,7 @@ fn posterior_table(parameters: &[Parameter], posterior: &Posterior) -> String {
         ]
     };
     let table = Csv::new(titles.split(','));
-    table
-        .with_all(posterior.diagnoses.iter().enumerate(), line)
-        .text()
+    table.with_all(posterior.diagnoses.iter().enumerate(), line).text()
 }
 
 /// One line a model, as it was given; those without a minimum have a chi-square alone.
@@ -271,18 +232,11 @@ fn comparison(alternatives: &AlternativeModels) -> String {
         let none = || [const { Cell::Empty }; 7];
         let [free, freedom, p, aic, aicc, bic, weight] =
             found.map_or_else(none, |found| evaluated(at, found));
-        let (name, chi_square) = (
-            alternative.name.clone().into(),
-            alternative.fit.chi_square().into(),
-        );
+        let (name, chi_square) =
+            (alternative.name.clone().into(), alternative.fit.chi_square().into());
         let foretells = alternative.foretells.as_ref();
-        let (mean, error) = (
-            foretells.map(|f| f.mean).into(),
-            foretells.map(|f| f.error).into(),
-        );
-        [
-            name, free, chi_square, freedom, p, aic, aicc, bic, weight, mean, error,
-        ]
+        let (mean, error) = (foretells.map(|f| f.mean).into(), foretells.map(|f| f.error).into());
+        [name, free, chi_square, freedom, p, aic, aicc, bic, weight, mean, error]
     };
     let lost = |lost: &super::Unfitted| -> [Cell; 11] {
         let mut cells = [const { Cell::Empty }; 11];

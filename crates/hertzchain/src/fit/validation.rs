@@ -18,11 +18,7 @@ pub(super) fn of_table(arguments: &Arguments) -> Result<(), Failure> {
     refuse("--filter", recorded.filter.is_some(), why)?;
     let why = "can't be combined with --against: models are compared by likelihoods, and a robust loss is none; \
                compare without --robust, or leave outliers out of the table";
-    refuse(
-        "--robust",
-        arguments.robust && !arguments.against.is_empty(),
-        why,
-    )?;
+    refuse("--robust", arguments.robust && !arguments.against.is_empty(), why)?;
     of_any(arguments)
 }
 
@@ -36,11 +32,7 @@ pub(super) fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
     refuse("--against", !arguments.against.is_empty(), why)?;
     let why = "is for tables of times of flight, and DATA are recordings, whose noise is taken from themselves: leave it out";
     refuse("--tof-error", arguments.measured.tof_error.is_some(), why)?;
-    refuse(
-        "--ratio-error",
-        arguments.measured.ratio_error.is_some(),
-        why,
-    )?;
+    refuse("--ratio-error", arguments.measured.ratio_error.is_some(), why)?;
     let shots = arguments.measured.error_shots;
     refuse("--error-shots", shots.is_some(), why)?;
     of_any(arguments)

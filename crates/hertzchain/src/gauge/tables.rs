@@ -17,12 +17,7 @@ pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
         ("oils.csv", oils(run_gauge)),
     ];
     all.extend((!run_gauge.verdict.failed.is_empty()).then(|| ("failed.csv", failed(run_gauge))));
-    all.extend(
-        run_gauge
-            .laws
-            .is_some()
-            .then(|| ("laws.csv", laws(run_gauge))),
-    );
+    all.extend(run_gauge.laws.is_some().then(|| ("laws.csv", laws(run_gauge))));
     if let Some(form) = &run_gauge.form {
         all.push(("form.csv", form_laws(form)));
         all.push(("form-contacts.csv", form_contacts(form, run_gauge)));
@@ -75,9 +70,7 @@ fn contacts(run_gauge: &GaugeResult) -> String {
         Err(why) => vec![missing(row, why)],
         Ok(contact) => pairs(row, contact),
     });
-    Csv::new(titles.split(','))
-        .with_all(lines, |line| line)
-        .text()
+    Csv::new(titles.split(',')).with_all(lines, |line| line).text()
 }
 
 /// Cells of a table of contacts.
@@ -109,19 +102,13 @@ fn pairs(row: &WetRow, contact: &Contact) -> Vec<Line> {
     };
     taken[9] = (contact.branch != Branch::Unknown).into();
     taken[11] = contact.branch.name().into();
-    taken[12] = contact
-        .scan
-        .as_ref()
-        .map(Scan::is_complete)
-        .map_or(Cell::Empty, Cell::from);
+    taken[12] = contact.scan.as_ref().map(Scan::is_complete).map_or(Cell::Empty, Cell::from);
     let other = |other: &Pair| {
         let mut cells = pair(row, other);
         cells[9] = false.into();
         cells
     };
-    std::iter::once(taken)
-        .chain(contact.others.iter().map(other))
-        .collect()
+    std::iter::once(taken).chain(contact.others.iter().map(other)).collect()
 }
 
 fn pair(row: &WetRow, pair: &Pair) -> Line {
@@ -137,21 +124,11 @@ fn pair(row: &WetRow, pair: &Pair) -> Line {
 fn oils(run_gauge: &GaugeResult) -> String {
     let titles =
         "name,distance,chi_square,freedom,probability,possible,farthest,farthest_standard_errors";
-    let own: Vec<&str> = run_gauge
-        .verdict
-        .matches
-        .first()
-        .map_or_else(Vec::new, |found| {
-            found
-                .own
-                .iter()
-                .map(|own| own.parameter.name.as_str())
-                .collect()
-        });
+    let own: Vec<&str> = run_gauge.verdict.matches.first().map_or_else(Vec::new, |found| {
+        found.own.iter().map(|own| own.parameter.name.as_str()).collect()
+    });
     let titles = titles.split(',').map(str::to_owned);
-    let own = own
-        .iter()
-        .flat_map(|name| [(*name).to_owned(), format!("{name} error")]);
+    let own = own.iter().flat_map(|name| [(*name).to_owned(), format!("{name} error")]);
     let line = |found: &Match| {
         let chi_square = &found.chi_square;
         let cells: [Cell; 8] = [
@@ -165,10 +142,7 @@ fn oils(run_gauge: &GaugeResult) -> String {
             found.largest.1.into(),
         ];
         let numbers = |own: &NuisanceParameter| [Cell::from(own.value), own.standard_error.into()];
-        cells
-            .into_iter()
-            .chain(found.own.iter().flat_map(numbers))
-            .collect::<Vec<_>>()
+        cells.into_iter().chain(found.own.iter().flat_map(numbers)).collect::<Vec<_>>()
     };
     let table = Csv::new(titles.chain(own));
     table.with_all(&run_gauge.verdict.matches, line).text()
@@ -177,9 +151,7 @@ fn oils(run_gauge: &GaugeResult) -> String {
 /// One line an oil that could not be computed.
 fn failed(run_gauge: &GaugeResult) -> String {
     let line = |(oil, why): &(String, String)| [oil.clone(), why.clone()];
-    Csv::new(["name", "why"])
-        .with_all(&run_gauge.verdict.failed, line)
-        .text()
+    Csv::new(["name", "why"]).with_all(&run_gauge.verdict.failed, line).text()
 }
 
 /// What both laws are of, and the unit of their prefactors.

@@ -77,11 +77,7 @@ fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
         false => Err(format!(
             "`{}` has another dimension; expected a number in {}",
             text.trim(),
-            if parameter.unit.is_empty() {
-                "no unit"
-            } else {
-                &parameter.unit
-            }
+            if parameter.unit.is_empty() { "no unit" } else { &parameter.unit }
         )),
     }
 }
@@ -89,22 +85,10 @@ fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
 fn prior(parameter: &Parameter, text: &str) -> Result<Prior, String> {
     let normal = text.split_once("+-").or_else(|| text.split_once('±'));
     if let Some((mean, sd)) = normal {
-        return Ok(Prior::Normal {
-            mean: number(parameter, mean)?,
-            sd: number(parameter, sd)?,
-        });
+        return Ok(Prior::Normal { mean: number(parameter, mean)?, sd: number(parameter, sd)? });
     }
-    let (median, factor) = text
-        .split_once("*/")
-        .ok_or("expected MEAN+-SD, or MEDIAN*/FACTOR")?;
-    let factor = factor
-        .trim()
-        .parse::<f64>()
-        .ok()
-        .filter(|factor| *factor > 1.0);
+    let (median, factor) = text.split_once("*/").ok_or("expected MEAN+-SD, or MEDIAN*/FACTOR")?;
+    let factor = factor.trim().parse::<f64>().ok().filter(|factor| *factor > 1.0);
     let factor = factor.ok_or("expected a factor above 1 after */")?;
-    Ok(Prior::LogNormal {
-        median: number(parameter, median)?,
-        ln_sd: factor.ln(),
-    })
+    Ok(Prior::LogNormal { median: number(parameter, median)?, ln_sd: factor.ln() })
 }

@@ -72,9 +72,7 @@ pub fn is_table(file: &Path, with_options_of_recordings: bool) -> Result<bool, F
     let mut lines = text.lines().map(str::trim);
     let title = lines.find(|line| !line.is_empty() && !line.starts_with('#'));
     let first = title.unwrap_or_default();
-    let numbers = first
-        .split([',', ';', '\t'])
-        .all(|cell| cell.trim().parse::<f64>().is_ok());
+    let numbers = first.split([',', ';', '\t']).all(|cell| cell.trim().parse::<f64>().is_ok());
     let times = first.to_ascii_lowercase().contains("time");
     let record = times || with_options_of_recordings;
     Ok(!binary && !numbers && (first.contains(SPEEDS) || !record))
@@ -262,10 +260,7 @@ pub fn opened_or(
     usual: &str,
     case: &str,
 ) -> Result<Experiment, Failure> {
-    let input = Input {
-        file: file.map(Path::to_owned),
-        preset: preset.clone(),
-    };
+    let input = Input { file: file.map(Path::to_owned), preset: preset.clone() };
     in_case(input::open_or(&input, usual)?, case)
 }
 
@@ -296,11 +291,7 @@ pub fn in_case(mut experiment: Experiment, case: &str) -> Result<Experiment, Fai
 
 /// The model's experiment, with what is set and in its case.
 pub fn experiment(modelled: &Modelled, case: Option<&str>) -> Result<Experiment, Failure> {
-    let experiment = opened(
-        modelled.model.as_deref(),
-        &modelled.preset,
-        case.unwrap_or_default(),
-    )?;
+    let experiment = opened(modelled.model.as_deref(), &modelled.preset, case.unwrap_or_default())?;
     changed(experiment, &modelled.set)
 }
 
@@ -344,9 +335,7 @@ pub fn model(
     freed: &Freed,
 ) -> Result<Model, Failure> {
     if freed.free.is_empty() {
-        return Err(user(
-            "nothing is free: --free (free in Python) names numbers, such as eta,B",
-        ));
+        return Err(user("nothing is free: --free (free in Python) names numbers, such as eta,B"));
     }
     let number = |name: &String| {
         let plain = name.split(':').next().unwrap_or_default().trim();
@@ -378,9 +367,7 @@ pub fn pulses(problem: PulseProblem, freed: &Freed) -> Result<PulseProblem, Fail
 
 /// As many threads as asked for.
 pub fn pool(threads: Option<Threads>) -> Result<ThreadPool, Failure> {
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, |threads| threads.0))
-        .build();
+    let pool = ThreadPoolBuilder::new().num_threads(threads.map_or(0, |threads| threads.0)).build();
     pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
 }
 

@@ -16,9 +16,7 @@ fn all(model: &Model) -> impl Iterator<Item = (&str, &Reference)> {
 #[must_use]
 pub fn references(model: &Model) -> Vec<String> {
     let experiment = model.experiment();
-    all(model)
-        .map(|(name, reference)| sentence(name, reference, experiment.beads()))
-        .collect()
+    all(model).map(|(name, reference)| sentence(name, reference, experiment.beads())).collect()
 }
 
 /// Which contact a number that was set belongs to, where its section's contacts differ.

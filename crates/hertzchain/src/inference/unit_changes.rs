@@ -15,9 +15,7 @@ pub fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
     let free = paths(experiment, free);
     let set = paths(experiment, sets.iter().map(|set| set.name.as_str()));
     let mut reported: Vec<String> = without_effect(model, sets);
-    let unlike = set
-        .iter()
-        .filter_map(|path| super::reference::of_unlike(experiment, path));
+    let unlike = set.iter().filter_map(|path| super::reference::of_unlike(experiment, path));
     reported.extend(unlike);
     for steering in free.iter().chain(&set) {
         let followers = experiment.followers(steering).unwrap_or_default();
@@ -69,16 +67,8 @@ const PUSH: &str = "near_end.force";
 /// What a Young modulus still does where a stiffness that would follow from it has a
 /// number of its own.
 fn without_effect(model: &Model, sets: &[Assignment]) -> Vec<String> {
-    let free: Vec<&str> = model
-        .numbers()
-        .as_slice()
-        .iter()
-        .map(|n| n.name())
-        .collect();
-    let all = free
-        .iter()
-        .copied()
-        .chain(sets.iter().map(|set| set.name.as_str()));
+    let free: Vec<&str> = model.numbers().as_slice().iter().map(|n| n.name()).collect();
+    let all = free.iter().copied().chain(sets.iter().map(|set| set.name.as_str()));
     let Some(stiffness) = all.into_iter().find(|name| STIFFNESS.contains(&last(name))) else {
         return Vec::new();
     };
@@ -113,10 +103,7 @@ fn follows(steering: &str, follower: &Place) -> String {
 
 fn stays(steering: &str, follower: &Place, is_free: bool) -> String {
     let (how, unit) = match is_free {
-        true => (
-            "free",
-            format!("{} where the fit starts, another elsewhere", follower.unit),
-        ),
+        true => ("free", format!("{} where the fit starts, another elsewhere", follower.unit)),
         false => ("set", format!("now {}", follower.unit)),
     };
     format!(

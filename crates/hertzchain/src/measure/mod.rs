@@ -56,9 +56,7 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>, Fai
 }
 
 /// Endings of recordings; a folder may hold other things beside.
-const ENDINGS: [&str; 9] = [
-    "h5", "hdf5", "csv", "tsv", "txt", "npy", "npz", "wav", "tdms",
-];
+const ENDINGS: [&str; 9] = ["h5", "hdf5", "csv", "tsv", "txt", "npy", "npz", "wav", "tdms"];
 
 fn inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let refused = |error| Failure::User(format!("{}: {error}", folder.display()));
@@ -97,12 +95,7 @@ impl MeasureResult {
     pub fn curve(&self, case: &str) -> Result<Data, Failure> {
         // The same numbers as in speeds.csv, bit for bit.
         let case = Some(case.to_owned()).filter(|case| !case.is_empty());
-        inference::parsed(
-            "measured",
-            &speeds_csv(&self.curves),
-            &CurveOptions::default(),
-            case,
-        )
+        inference::parsed("measured", &speeds_csv(&self.curves), &CurveOptions::default(), case)
     }
 }
 
@@ -212,10 +205,7 @@ fn measuring(
     rig: Option<&Experiment>,
     high_pass_hz: Option<f64>,
 ) -> Result<SignalOptions, Failure> {
-    let beads = picking
-        .beads
-        .zip(picking.sensor)
-        .map(|(beads, sensor)| (beads.0, sensor.0));
+    let beads = picking.beads.zip(picking.sensor).map(|(beads, sensor)| (beads.0, sensor.0));
     if let Some((beads, sensor)) = beads.filter(|(beads, sensor)| sensor >= beads) {
         return Err(Failure::User(format!(
             "--sensor {sensor} is not one of --beads {beads} before the last"
@@ -230,13 +220,8 @@ fn measuring(
             ..FindOptions::default()
         },
         method: method(picking),
-        high_pass_s: high_pass_hz
-            .filter(|hz| *hz > 0.0)
-            .map(|hz| (TAU * hz).recip()),
-        low_pass: picking.smooth.map(|cutoff| LowPass {
-            cutoff_hz: cutoff.0,
-            order: ORDER,
-        }),
+        high_pass_s: high_pass_hz.filter(|hz| *hz > 0.0).map(|hz| (TAU * hz).recip()),
+        low_pass: picking.smooth.map(|cutoff| LowPass { cutoff_hz: cutoff.0, order: ORDER }),
         bandwidth: bandwidth(picking, rig)?,
     })
 }
@@ -244,10 +229,7 @@ fn measuring(
 /// The amplifier's low-pass, if an option or the rig's file states it; 0 for none.
 fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandwidth>, Failure> {
     let amplifier = rig.map(|rig| &rig.campaign().amplifier);
-    let corner_hz = picking
-        .low_pass
-        .map(|corner| corner.0)
-        .or(amplifier.map(|of| of.low_pass_hz));
+    let corner_hz = picking.low_pass.map(|corner| corner.0).or(amplifier.map(|of| of.low_pass_hz));
     if picking.filter.is_some() && corner_hz.is_none() {
         return Err(Failure::User(
             "--filter is of the amplifier's low-pass, whose corner --low-pass or --rig states"
@@ -294,14 +276,11 @@ fn polarity(way: Option<Way>) -> Polarity {
 fn method(picking: &Picking) -> Method {
     match picking.method {
         MethodName::Local => Method::default(),
-        MethodName::Onset => Method::Onset {
-            fraction: picking.onset.0,
-        },
+        MethodName::Onset => Method::Onset { fraction: picking.onset.0 },
         MethodName::Correlation => Method::CrossCorrelation,
-        MethodName::Shape => Method::MatchedShape {
-            shape: Shape::cos_power(POWER),
-            width: FIT_WIDTHS,
-        },
+        MethodName::Shape => {
+            Method::MatchedShape { shape: Shape::cos_power(POWER), width: FIT_WIDTHS }
+        }
     }
 }
 

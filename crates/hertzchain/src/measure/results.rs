@@ -39,18 +39,14 @@ impl Serialize for Report<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { measured, curves } = self;
         let mut all = serializer.serialize_map(None)?;
-        let low_pass = measured
-            .bandwidth
-            .map(|of| json!({ "corner_hz": of.corner_hz, "order": of.order }));
+        let low_pass =
+            measured.bandwidth.map(|of| json!({ "corner_hz": of.corner_hz, "order": of.order }));
         all.serialize_entry("low_pass", &low_pass)?;
         all.serialize_entry("cases", &Each(&curves.cases, case))?;
         all.serialize_entry("lost", &Each(&curves.unmeasured, unmeasured))?;
         all.serialize_entry("notes", &Each(&measured.notes, note))?;
         all.serialize_entry("ratios", &Each(&curves.ratios, wet_over_dry))?;
-        all.serialize_entry(
-            "refused",
-            &Each(&measured.refused, |one| json!(one.to_string())),
-        )?;
+        all.serialize_entry("refused", &Each(&measured.refused, |one| json!(one.to_string())))?;
         all.serialize_entry("shots", &Each(&measured.shots, shot))?;
         all.serialize_entry("unmatched", &measured.unmatched)?;
         all.end()

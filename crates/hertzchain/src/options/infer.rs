@@ -78,13 +78,7 @@ pub struct ModelOptions {
     #[serde(with = "pairs")]
     pub set: Vec<Assignment>,
     /// Relative accuracy of the model's times of flight
-    #[arg(
-        long,
-        short,
-        value_name = "NUMBER",
-        default_value = "1e-5",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", allow_hyphen_values = true)]
     pub accuracy: Accuracy,
     /// Threads; all cores when absent; results do not depend on it
     #[arg(long, value_name = "COUNT", allow_hyphen_values = true)]
@@ -111,10 +105,7 @@ pub struct ParameterOptions {
     pub bounds: Vec<Assignment>,
     /// What is known of a number: normal, or normal in the logarithm by a factor
     #[arg(long, value_name = "NAME=MEAN+-SD or NAME=MEDIAN*/FACTOR")]
-    #[serde(
-        serialize_with = "pairs::serialize",
-        deserialize_with = "pairs::priors"
-    )]
+    #[serde(serialize_with = "pairs::serialize", deserialize_with = "pairs::priors")]
     pub prior: Vec<Assignment>,
     /// Size of a change of a number that matters
     #[arg(long, value_name = "NAME=VALUE")]
@@ -155,12 +146,7 @@ pub struct FitOptions {
     #[arg(long, value_name = "MODEL=NAMES")]
     pub against: Vec<Against>,
     /// Most steps of a posterior's walkers
-    #[arg(
-        long,
-        value_name = "COUNT",
-        default_value = "20000",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "COUNT", default_value = "20000", allow_hyphen_values = true)]
     pub steps: u64,
     /// Compute every curve of a posterior, instead of interpolating between some hundreds or
     /// thousands where that is as good
@@ -175,20 +161,10 @@ pub struct FitOptions {
     #[arg(long)]
     pub robust: bool,
     /// Starts: the first as given, others spread over bounds and priors
-    #[arg(
-        long,
-        value_name = "COUNT",
-        default_value = "1",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "COUNT", default_value = "1", allow_hyphen_values = true)]
     pub starts: Few,
     /// Seed of all that is random
-    #[arg(
-        long,
-        value_name = "NUMBER",
-        default_value = "0",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "NUMBER", default_value = "0", allow_hyphen_values = true)]
     pub seed: u64,
     /// Print JSON
     #[arg(long)]
@@ -221,12 +197,7 @@ pub struct RecordOptions {
     #[arg(long, value_enum, value_name = "NAME")]
     pub filter: Option<Filter>,
     /// Most shots that are fitted, spread evenly over those that are good
-    #[arg(
-        long,
-        value_name = "COUNT",
-        default_value = "40",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "COUNT", default_value = "40", allow_hyphen_values = true)]
     pub most_shots: Few,
 }
 
@@ -336,12 +307,7 @@ pub struct DesignOptions {
     #[serde(with = "pairs")]
     pub costs: Vec<Cost>,
     /// Length of the proposed series
-    #[arg(
-        long,
-        value_name = "COUNT",
-        default_value = "5",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "COUNT", default_value = "5", allow_hyphen_values = true)]
     pub picks: Few,
     /// Print JSON
     #[arg(long)]
@@ -394,12 +360,7 @@ pub struct GaugeOptions {
     #[serde(skip_serializing)]
     pub dry_preset: Option<String>,
     /// Free numbers of the dry contacts, by names that both models know
-    #[arg(
-        long,
-        value_name = "NAMES",
-        value_delimiter = ',',
-        default_value = "aisi316.eta,dry.B"
-    )]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "aisi316.eta,dry.B")]
     pub dry_free: Vec<String>,
     /// Numbers that each chain has for itself, by names that both models know, such as the load that
     /// friction holds in a tapped row (near_end.force); fitted anew with every oil
@@ -413,13 +374,7 @@ pub struct GaugeOptions {
     #[serde(skip_serializing)]
     pub oils: Option<PathBuf>,
     /// Relative accuracy of the model's times of flight
-    #[arg(
-        long,
-        short,
-        value_name = "NUMBER",
-        default_value = "1e-5",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, short, value_name = "NUMBER", default_value = "1e-5", allow_hyphen_values = true)]
     pub accuracy: Accuracy,
     /// Threads; all cores when absent; results do not depend on it
     #[arg(long, value_name = "COUNT", allow_hyphen_values = true)]

@@ -64,9 +64,7 @@ pub fn from_json<A: Args + DeserializeOwned>(
     options: Value,
 ) -> Result<A, Failure> {
     let Value::Object(mut options) = options else {
-        return Err(Failure::User(format!(
-            "{verb}: expected an object of options, not {options}"
-        )));
+        return Err(Failure::User(format!("{verb}: expected an object of options, not {options}")));
     };
     options.retain(|_, value| !value.is_null());
     let command = A::augment_args(Command::new(verb));
@@ -97,9 +95,8 @@ pub fn recorded(options: &impl Serialize) -> Value {
 fn defaults<A: Args>() -> A {
     let command = A::augment_args(Command::new("options").no_binary_name(true));
     let command = command.mut_args(|arg| arg.required(false));
-    let options = command
-        .try_get_matches_from([""; 0])
-        .and_then(|matches| A::from_arg_matches(&matches));
+    let options =
+        command.try_get_matches_from([""; 0]).and_then(|matches| A::from_arg_matches(&matches));
     options.expect("every option has a default or is optional")
 }
 

@@ -149,11 +149,7 @@ impl FromStr for Preload {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let force = || {
-            number(text, "N")
-                .filter(|force| *force >= 0.0)
-                .map(Self::Of)
-        };
+        let force = || number(text, "N").filter(|force| *force >= 0.0).map(Self::Of);
         match text.trim() {
             "none" => Ok(Self::Nothing),
             _ => force().ok_or_else(|| {
@@ -176,14 +172,9 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text
-            .split_once('=')
-            .filter(|(name, _)| !name.trim().is_empty());
+        let parts = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
         let (name, text) = parts.ok_or("expected NAME=VALUE, such as eta=3.2e4")?;
-        Ok(Self {
-            name: name.trim().to_owned(),
-            text: text.trim().to_owned(),
-        })
+        Ok(Self { name: name.trim().to_owned(), text: text.trim().to_owned() })
     }
 }
 
@@ -209,10 +200,7 @@ impl FromStr for Against {
         let parts = text.split_once('=');
         let (model, free) = parts.ok_or("expected MODEL=NAMES, such as hertz-viscoelastic=eta")?;
         let free = free.split(',').map(|name| name.trim().to_owned()).collect();
-        Ok(Self {
-            model: model.trim().to_owned(),
-            free,
-        })
+        Ok(Self { model: model.trim().to_owned(), free })
     }
 }
 
@@ -281,12 +269,7 @@ impl Display for Against {
 impl Display for Cost {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let way = self.of.to_possible_value();
-        write!(
-            f,
-            "{}={}",
-            way.as_ref().map_or("", |way| way.get_name()),
-            self.value
-        )
+        write!(f, "{}={}", way.as_ref().map_or("", |way| way.get_name()), self.value)
     }
 }
 
@@ -345,10 +328,7 @@ pub(super) mod pairs {
             Entry::One(one) => format!("{name}={one}").parse(),
             Entry::Two([first, second]) => format!("{name}={first}{sign}{second}").parse(),
         };
-        entries
-            .map(pair)
-            .collect::<Result<_, String>>()
-            .map_err(D::Error::custom)
+        entries.map(pair).collect::<Result<_, String>>().map_err(D::Error::custom)
     }
 
     /// Of priors: mean and standard deviation.

@@ -16,11 +16,7 @@ use std::path::PathBuf;
 /// program computes what sensors in the row see and when, for the chains of
 /// the paper by Labbé, Vergara and Olivares and for your own.
 #[derive(Debug, Parser)]
-#[command(
-    name = "hertzchain",
-    disable_version_flag = true,
-    arg_required_else_help = true
-)]
+#[command(name = "hertzchain", disable_version_flag = true, arg_required_else_help = true)]
 #[command(after_help = ENVIRONMENT, subcommand_negates_reqs = true)]
 pub(crate) struct Program {
     /// Print the version; with --verbose also the instruction sets

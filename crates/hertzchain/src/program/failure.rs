@@ -51,10 +51,7 @@ pub(crate) fn print_assumed(data: &Data, measured: &Measured) {
 
 /// Numbers that are kept while their unit changes, and loads that the model does not have.
 pub(crate) fn print_stored(model: &Model, sets: &[Assignment]) {
-    for kept in unit_changes(model, sets)
-        .into_iter()
-        .chain(held_loads(model))
-    {
+    for kept in unit_changes(model, sets).into_iter().chain(held_loads(model)) {
         note(&format!("warning: {kept}"));
     }
 }

@@ -58,9 +58,7 @@ impl Folder {
     /// Writes a figure as SVG and PNG.
     pub(crate) fn figure(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
         self.write(&format!("{name}.svg"), figure.svg().as_bytes())?;
-        let png = figure
-            .png(DPI)
-            .map_err(|error| Failure::Ours(format!("{name}.png: {error}")))?;
+        let png = figure.png(DPI).map_err(|error| Failure::Ours(format!("{name}.png: {error}")))?;
         self.write(&format!("{name}.png"), &png)
     }
 

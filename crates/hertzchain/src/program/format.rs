@@ -82,10 +82,7 @@ pub(crate) fn table(head: &[String], rows: &[Vec<String>]) -> String {
 /// Numbers with the same decimals, so many that the largest has `digits`; a
 /// dash where there is none.
 pub(crate) fn column(values: &[Option<f64>], digits: usize) -> Vec<String> {
-    let most = values
-        .iter()
-        .flatten()
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
+    let most = values.iter().flatten().fold(0.0_f64, |most, value| most.max(value.abs()));
     let decimals = decimals(most, digits);
     let cell = |value: &Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.decimals$}"));
     values.iter().map(cell).collect()
@@ -93,10 +90,7 @@ pub(crate) fn column(values: &[Option<f64>], digits: usize) -> Vec<String> {
 
 fn trimmed(table: &Table) -> String {
     let lines = table.to_string();
-    lines
-        .lines()
-        .map(|line| format!("{}\n", line.trim_end()))
-        .collect()
+    lines.lines().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
 /// Groups of a description under their titles.
@@ -116,11 +110,7 @@ fn value(style: Style, value: &Value, unit: &str) -> String {
     match value {
         Value::Number(number) => style.quantity(*number, unit),
         Value::Range(least, most) => {
-            format!(
-                "{} to {}",
-                style.quantity(*least, unit),
-                style.quantity(*most, unit)
-            )
+            format!("{} to {}", style.quantity(*least, unit), style.quantity(*most, unit))
         }
         Value::Count(count) if unit.is_empty() => count.to_string(),
         Value::Count(count) => format!("{count} {unit}"),

@@ -35,10 +35,7 @@ impl Clock {
     /// Clear for the latest of the times.
     pub(crate) fn of(times_s: &[f64], units: Units) -> Self {
         if units == Units::Dimensionless {
-            return Self {
-                scale: 1.0,
-                unit: "",
-            };
+            return Self { scale: 1.0, unit: "" };
         }
         let last = times_s.iter().copied().fold(0.0, f64::max);
         let (scale, unit) = match last {
@@ -85,9 +82,7 @@ pub(crate) fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]
     let mut charts = Vec::new();
     for (unit, quantity) in panels {
         let shown = sensors.iter().zip(&trace.columns);
-        let mut shown = shown
-            .filter(|(sensor, _)| name(**sensor, wall).1 == unit)
-            .peekable();
+        let mut shown = shown.filter(|(sensor, _)| name(**sensor, wall).1 == unit).peekable();
         if shown.peek().is_some() {
             let chart = Chart::new(&clock.label("Time"), &axis(quantity, unit, units));
             let lines = shown.enumerate().map(|(i, (sensor, column))| {
@@ -128,26 +123,16 @@ pub(crate) fn wall(experiment: &Experiment) -> Option<usize> {
 pub(crate) fn sweep(part: &BatchResult) -> Figure {
     let flights = part.rows.flights();
     let incident: Vec<(f64, f64)> = flights.iter().map(|flight| (flight.0, flight.1)).collect();
-    let reflected = flights
-        .iter()
-        .filter_map(|f| f.2.map(|time_s| (f.0, time_s)));
+    let reflected = flights.iter().filter_map(|f| f.2.map(|time_s| (f.0, time_s)));
     let reflected: Vec<(f64, f64)> = reflected.collect();
     let units = part.units;
     let all = incident.iter().chain(&reflected);
     let clock = Clock::of(&all.map(|(_, time_s)| *time_s).collect::<Vec<_>>(), units);
-    let chart = Chart::new(
-        &axis("Striker speed $v_0$", "m/s", units),
-        &clock.label("Time of flight"),
-    );
+    let chart =
+        Chart::new(&axis("Striker speed $v_0$", "m/s", units), &clock.label("Time of flight"));
     let chart = chart.title(&part.title).x_log().y_log();
     let law = |column| part.rows.law(column, part.accuracy).0;
-    let chart = branch(
-        chart,
-        &clock,
-        "reflected",
-        &reflected,
-        &law(Column::Reflected),
-    );
+    let chart = branch(chart, &clock, "reflected", &reflected, &law(Column::Reflected));
     let chart = branch(chart, &clock, "incident", &incident, &law(Column::Incident));
     Figure::single_column(78.0).panel(chart)
 }
@@ -169,9 +154,7 @@ fn branch(
     };
     let (mut speeds, times_s): (Vec<f64>, Vec<f64>) = flights.iter().copied().unzip();
     let points = |name: &str| {
-        Series::points(name, &speeds, &clock.scaled(&times_s))
-            .marker(marker)
-            .colour(colour)
+        Series::points(name, &speeds, &clock.scaled(&times_s)).marker(marker).colour(colour)
     };
     let Ok(law) = fit else {
         return chart.with(points(name));

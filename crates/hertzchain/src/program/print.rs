@@ -19,10 +19,7 @@ pub(crate) fn print_with(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
     to_stdout(|out| {
-        let mut plain = Plain {
-            out,
-            held: Vec::new(),
-        };
+        let mut plain = Plain { out, held: Vec::new() };
         write(&mut plain)?;
         plain.flush()
     })

@@ -40,11 +40,7 @@ fn a_work_outside_journals_tells_where_it_is() {
 #[test]
 fn every_law_has_its_source() {
     for row in LAWS {
-        assert!(
-            Work::of_key(row.info.reference).is_some(),
-            "{}",
-            row.info.name
-        );
+        assert!(Work::of_key(row.info.reference).is_some(), "{}", row.info.name);
     }
     assert_eq!(Work::of_key("no user1900"), None);
 }

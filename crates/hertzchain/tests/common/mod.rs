@@ -42,15 +42,7 @@ pub(crate) fn file(folder: &Path, name: &str, text: &str) -> String {
 pub(crate) fn curve(folder: &Path, preset: &str) -> String {
     let out = folder.join(preset);
     let out = out.to_str().unwrap();
-    let swept = run(&[
-        "sweep",
-        "-p",
-        preset,
-        "--speeds",
-        "log:0.1:1.2:6",
-        "--out",
-        out,
-    ]);
+    let swept = run(&["sweep", "-p", preset, "--speeds", "log:0.1:1.2:6", "--out", out]);
     assert!(swept.status.success());
     format!("{out}/sweep.csv")
 }

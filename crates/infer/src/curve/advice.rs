@@ -121,31 +121,22 @@ impl CurveProblem {
             measure: name.to_owned(),
             determined: found.count,
             worst: found.worst,
-            sd: (found.sd.iter().zip(&sized))
-                .map(|(sd, of)| sd * of.scale)
-                .collect(),
+            sd: (found.sd.iter().zip(&sized)).map(|(sd, of)| sd * of.scale).collect(),
         };
         let errors = ExpectedErrors::like(self.data());
         let beside = self.other_readings(fit, &errors);
         let apart = self.apart(fit, &errors);
         let mut evaluated: Vec<Evaluated> = beside.clone();
-        evaluated.extend(
-            apart
-                .iter()
-                .map(|(name, rows)| (name.clone(), own.and(rows))),
-        );
-        let mut prospects: Vec<Prospect> = (evaluated.iter())
-            .map(|(name, rows)| prospect(name, rows.determined()))
-            .collect();
+        evaluated.extend(apart.iter().map(|(name, rows)| (name.clone(), own.and(rows))));
+        let mut prospects: Vec<Prospect> =
+            (evaluated.iter()).map(|(name, rows)| prospect(name, rows.determined())).collect();
         prospects.sort_by(|a, b| {
             let count = b.determined.cmp(&a.determined);
             count.then(a.worst.total_cmp(&b.worst))
         });
         // The last of those at the same speeds has all of them, where there are several.
         let full = beside.last().map_or(&own, |(_, rows)| rows);
-        let all = apart
-            .iter()
-            .fold(full.clone(), |sum, (_, rows)| sum.and(rows));
+        let all = apart.iter().fold(full.clone(), |sum, (_, rows)| sum.and(rows));
         let named: Vec<&Prospect> = prospects.iter().collect();
         let name = format!("all of this: {}", names(&named));
         let together = (!named.is_empty()).then(|| prospect(&name, all.determined()));
@@ -216,12 +207,7 @@ impl CurveProblem {
         let experiment = self.model().experiment();
         let wider = wider(&own);
         let ends = [wider.first(), wider.last()].map(|end| end.copied().unwrap_or(f64::NAN));
-        let spread = format!(
-            "at {} speeds from {:.2} to {:.2} m/s",
-            wider.len(),
-            ends[0],
-            ends[1]
-        );
+        let spread = format!("at {} speeds from {:.2} to {:.2} m/s", wider.len(), ends[0], ends[1]);
         let pushed = pushed(experiment);
         let mut ways = Vec::new();
         if any_speed {

@@ -29,13 +29,11 @@ impl CurveProblem {
             point
         };
         let sides = (0..fit.point.len()).flat_map(|at| [(at, 1.0), (at, -1.0)]);
-        let points: Vec<Vec<f64>> = std::iter::once(fit.point.clone())
-            .chain(sides.map(moved))
-            .collect();
+        let points: Vec<Vec<f64>> =
+            std::iter::once(fit.point.clone()).chain(sides.map(moved)).collect();
         let predicted = self.curves(std::slice::from_ref(&fit.point)).into_iter();
-        let predicted = predicted
-            .last()
-            .unwrap_or_else(|| Err(ModelError("no curve was computed".into())))?;
+        let predicted =
+            predicted.last().unwrap_or_else(|| Err(ModelError("no curve was computed".into())))?;
         let speeds = Speeds::of_rows(&self.data().speeds_m_s());
         let finer = self.model().clone().for_slopes();
         let found = finer.curves(&points, &speeds).into_iter();
@@ -60,9 +58,6 @@ impl CurveProblem {
             covariance.sd_of(&slopes.collect::<Vec<f64>>())
         };
         let sd = (0..predicted.len()).map(|row| [0, 1, 2, 3].map(|of| sd(row, of)));
-        Ok(FitCurve {
-            sd: sd.collect(),
-            predicted,
-        })
+        Ok(FitCurve { sd: sd.collect(), predicted })
     }
 }

@@ -28,13 +28,8 @@ pub enum Kind {
 
 impl Kind {
     /// All of them, in their order.
-    pub const ALL: [Self; 5] = [
-        Self::Incident,
-        Self::Reflected,
-        Self::Ratio,
-        Self::Sensor,
-        Self::Preload,
-    ];
+    pub const ALL: [Self; 5] =
+        [Self::Incident, Self::Reflected, Self::Ratio, Self::Sensor, Self::Preload];
 }
 
 /// A way to measure: a chain, and what is read from it.
@@ -78,18 +73,13 @@ impl ExpectedErrors {
         let of = |times: bool| {
             let rows = data.rows.iter();
             let values = rows.flat_map(move |row| {
-                let wanted = Observable::ALL
-                    .into_iter()
-                    .filter(move |of| of.is_time() == times);
+                let wanted = Observable::ALL.into_iter().filter(move |of| of.is_time() == times);
                 wanted.filter_map(|of| Some(row.value(of)?.sigma))
             });
             median(values.collect())
         };
         let speeds = data.rows.iter().map(|row| row.speed_m_s.sigma).collect();
-        let both = data
-            .rows
-            .iter()
-            .filter(|row| row.values[..2].iter().all(Option::is_some));
+        let both = data.rows.iter().filter(|row| row.values[..2].iter().all(Option::is_some));
         let correlations = both.filter_map(|row| row.correlation).collect();
         Self {
             speed_m_s: median(speeds).unwrap_or(0.0),
@@ -219,10 +209,7 @@ impl CurveProblem {
         errors: &ExpectedErrors,
     ) -> Result<Vec<Candidate>, InferError> {
         let numbers = self.model().numbers();
-        let each = numbers
-            .as_slice()
-            .iter()
-            .find(|n| n.form() == Form::EachSpeed);
+        let each = numbers.as_slice().iter().find(|n| n.form() == Form::EachSpeed);
         if let Some(number) = each {
             return Err(InferError::Input(format!(
                 "{} has one value for each speed of the data, which says nothing of other speeds",
@@ -255,20 +242,14 @@ fn of_way(
     let measured = problem.measured();
     let candidate = |(row, speed): (usize, &f64)| {
         let own = measured.iter().enumerate();
-        let own: Vec<usize> = own
-            .filter(|(_, (of, _))| *of == row)
-            .map(|(at, _)| at)
-            .collect();
+        let own: Vec<usize> = own.filter(|(_, (of, _))| *of == row).map(|(at, _)| at).collect();
         let columns = || jacobian.columns.iter();
         let length =
             |column: &Vec<f64>| norm(&own.iter().map(|at| column[*at]).collect::<Vec<_>>());
         let doubts = columns().zip(&jacobian.disagreement);
         Candidate {
             name: format!("{speed:.3} m/s: {}", way.name),
-            rows: own
-                .iter()
-                .map(|at| columns().map(|column| column[*at]).collect())
-                .collect(),
+            rows: own.iter().map(|at| columns().map(|column| column[*at]).collect()).collect(),
             doubts: doubts
                 .map(|(column, disagreement)| JUMPING * disagreement * length(column))
                 .collect(),
@@ -301,10 +282,7 @@ pub(super) fn expected(
         };
         DataRow {
             line: at as u64 + 1,
-            speed_m_s: Estimate {
-                value: *speed,
-                sigma: errors.speed_m_s,
-            },
+            speed_m_s: Estimate { value: *speed, sigma: errors.speed_m_s },
             values: Observable::ALL.map(value),
             correlation: Some(errors.correlation),
             freedom: Freedom::KNOWN,

@@ -27,10 +27,7 @@ impl Speeds {
     /// One speed a row.
     #[must_use]
     pub fn of_rows(speeds_m_s: &[f64]) -> Self {
-        Self {
-            at: speeds_m_s.iter().copied().enumerate().collect(),
-            rows: speeds_m_s.len(),
-        }
+        Self { at: speeds_m_s.iter().copied().enumerate().collect(), rows: speeds_m_s.len() }
     }
 }
 
@@ -127,10 +124,8 @@ impl Model {
         points: &[Vec<f64>],
         speeds: &Speeds,
     ) -> Vec<Result<Vec<Predicted>, ModelError>> {
-        let planned: Vec<Result<Vec<Shooting>, ModelError>> = points
-            .par_iter()
-            .map(|point| self.plans(point, speeds))
-            .collect();
+        let planned: Vec<Result<Vec<Shooting>, ModelError>> =
+            points.par_iter().map(|point| self.plans(point, speeds)).collect();
         let mut plans = Vec::new();
         let mut part = |one: Shooting| {
             plans.push(one.plan);
@@ -188,9 +183,7 @@ impl Model {
             let settings = self.numbers.settings(point, speeds.rows, (row, speed_m_s));
             let experiment = match latest.take() {
                 Some((same, experiment)) if same == settings => experiment,
-                _ => self
-                    .set(&settings)
-                    .map_err(|error| at(speed_m_s, brief(&error)))?,
+                _ => self.set(&settings).map_err(|error| at(speed_m_s, brief(&error)))?,
             };
             let planned = Plan::from_experiment(&experiment, Some(speed_m_s));
             let (plan, _) = planned.map_err(|mistakes| at(speed_m_s, reported(&mistakes)))?;

@@ -72,14 +72,7 @@ impl CurveProblem {
     fn unchecked(model: Model, data: Data, parameters: Vec<Parameter>) -> Self {
         let (speeds, stencils) = curve_speeds(&data.speeds_m_s());
         let labels = data.rows.iter().flat_map(row_labels).collect();
-        Self {
-            model,
-            data,
-            parameters,
-            speeds,
-            stencils,
-            labels,
-        }
+        Self { model, data, parameters, speeds, stencils, labels }
     }
 
     /// The model.
@@ -174,8 +167,7 @@ impl CurveProblem {
     #[must_use]
     pub fn measured(&self) -> Vec<(usize, Observable)> {
         let rows = self.data.rows.iter().enumerate();
-        rows.flat_map(|(at, row)| row.observables().map(move |of| (at, of)))
-            .collect()
+        rows.flat_map(|(at, row)| row.observables().map(move |of| (at, of))).collect()
     }
 
     /// Residuals of a predicted curve.
@@ -210,13 +202,8 @@ impl CurveProblem {
     ) -> Result<Vec<Vec<f64>>, ModelError> {
         let (misses, errors) = self.misses(row, measured, curve)?;
         let unit = |at: usize| {
-            let one: Vec<f64> = (0..misses.len())
-                .map(|k| f64::from(u8::from(k == at)))
-                .collect();
-            whiten(&one, &errors)
-                .into_iter()
-                .map(|(change, _)| change)
-                .collect()
+            let one: Vec<f64> = (0..misses.len()).map(|k| f64::from(u8::from(k == at))).collect();
+            whiten(&one, &errors).into_iter().map(|(change, _)| change).collect()
         };
         Ok((0..misses.len()).map(unit).collect())
     }
@@ -274,9 +261,7 @@ fn curve_speeds(speeds_m_s: &[f64]) -> (Speeds, Vec<Stencil>) {
 
 fn row_labels(row: &DataRow) -> Vec<String> {
     // Four digits distinguish rows for a reader.
-    let speed: f64 = format!("{:.3e}", row.speed_m_s.value)
-        .parse()
-        .unwrap_or(row.speed_m_s.value);
+    let speed: f64 = format!("{:.3e}", row.speed_m_s.value).parse().unwrap_or(row.speed_m_s.value);
     let label = |of: Observable| format!("line {}, {speed} m/s, {}", row.line, of.name());
     row.observables().map(label).collect()
 }
@@ -292,10 +277,7 @@ impl Problem for CurveProblem {
 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
         let curves = self.all_curves(points);
-        curves
-            .into_iter()
-            .map(|curve| self.residuals_of(&curve?))
-            .collect()
+        curves.into_iter().map(|curve| self.residuals_of(&curve?)).collect()
     }
 
     fn responses(&self, point: &[f64]) -> Result<Option<Vec<Response>>, ModelError> {
@@ -306,11 +288,7 @@ impl Problem for CurveProblem {
             let first = all.len();
             let own = self.row_responses(row, measured, &curve)?;
             all.extend(own.into_iter().map(|changes| -> Response {
-                changes
-                    .into_iter()
-                    .enumerate()
-                    .map(|(k, change)| (first + k, change))
-                    .collect()
+                changes.into_iter().enumerate().map(|(k, change)| (first + k, change)).collect()
             }));
         }
         Ok(Some(all))

@@ -28,10 +28,7 @@ impl Stencil {
             (None, Some(above)) => (above, (above + 1..x.len()).find(|&o| apart(above, o))?),
             (None, None) => return None,
         };
-        Some(Self::through(
-            [row, one, two],
-            [one, two].map(|other| x[other] - x[row]),
-        ))
+        Some(Self::through([row, one, two], [one, two].map(|other| x[other] - x[row])))
     }
 
     /// For a speed that stands between one below and one above, each a relative
@@ -45,11 +42,7 @@ impl Stencil {
     fn through(at: [usize; 3], [h1, h2]: [f64; 2]) -> Self {
         Self {
             at,
-            weights: [
-                -(h1 + h2) / (h1 * h2),
-                -h2 / (h1 * (h1 - h2)),
-                h1 / (h2 * (h1 - h2)),
-            ],
+            weights: [-(h1 + h2) / (h1 * h2), -h2 / (h1 * (h1 - h2)), h1 / (h2 * (h1 - h2))],
         }
     }
 
@@ -61,9 +54,7 @@ impl Stencil {
     /// d ln y/d ln v of positive values at all speeds.
     pub(super) fn slope(&self, value: impl Fn(usize) -> Option<f64>) -> Option<f64> {
         let terms = self.at.iter().zip(self.weights);
-        terms
-            .map(|(&at, weight)| Some(weight * value(at)?.ln()))
-            .sum()
+        terms.map(|(&at, weight)| Some(weight * value(at)?.ln())).sum()
     }
 }
 

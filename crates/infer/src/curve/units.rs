@@ -19,10 +19,7 @@ impl CurveProblem {
     /// those that stand in the table.
     #[must_use]
     pub fn other_unit_of_speed(&self) -> Option<&'static str> {
-        let near = |factor: f64| {
-            self.middle_miss(factor)
-                .is_some_and(|miss| miss.abs() < NEAR)
-        };
+        let near = |factor: f64| self.middle_miss(factor).is_some_and(|miss| miss.abs() < NEAR);
         if near(1.0) {
             return None;
         }
@@ -33,17 +30,8 @@ impl CurveProblem {
     /// Median of ln(measured/predicted) of incident times at speeds so many times slower.
     fn middle_miss(&self, factor: f64) -> Option<f64> {
         let start: Vec<f64> = self.parameters().iter().map(|p| p.start).collect();
-        let speeds: Vec<f64> = self
-            .data()
-            .speeds_m_s()
-            .iter()
-            .map(|v| v / factor)
-            .collect();
-        let curve = self
-            .model()
-            .curves(&[start], &Speeds::of_rows(&speeds))
-            .pop()?
-            .ok()?;
+        let speeds: Vec<f64> = self.data().speeds_m_s().iter().map(|v| v / factor).collect();
+        let curve = self.model().curves(&[start], &Speeds::of_rows(&speeds)).pop()?.ok()?;
         let miss = |(row, predicted): (&crate::DataRow, &super::Predicted)| {
             let measured = row.value(Observable::Incident)?.value;
             Some((measured / predicted[Observable::Incident.index()]?).ln())

@@ -20,13 +20,7 @@ impl Errors {
     /// None yet, of a speed whose error has these degrees of freedom; errors of the first two
     /// numbers have this correlation.
     pub(super) fn new(of_speed: f64, correlation: f64) -> Self {
-        Self {
-            sigmas: Vec::new(),
-            moved: Vec::new(),
-            freedom: Vec::new(),
-            of_speed,
-            correlation,
-        }
+        Self { sigmas: Vec::new(), moved: Vec::new(), freedom: Vec::new(), of_speed, correlation }
     }
 
     pub(super) fn push(&mut self, sigma: f64, freedom: f64, moved: f64) {
@@ -47,12 +41,8 @@ impl Errors {
 
     /// B⁻¹ s: what the speed moves, weighed by the numbers' own errors.
     fn weighed(&self) -> Vec<f64> {
-        let in_sigmas: Vec<f64> = self
-            .moved
-            .iter()
-            .zip(&self.sigmas)
-            .map(|(moved, sigma)| moved / sigma)
-            .collect();
+        let in_sigmas: Vec<f64> =
+            self.moved.iter().zip(&self.sigmas).map(|(moved, sigma)| moved / sigma).collect();
         let weigh = |(at, own): (usize, &f64)| {
             let known = in_sigmas.get(1 - at.min(1)).filter(|_| at < 2);
             let beside = known.map_or(*own, |other| {
@@ -67,12 +57,7 @@ impl Errors {
     /// C = B + s sᵀ, B of the numbers' own errors: sᵀ C⁻¹ s = q/(1 + q) of the speed and
     /// (C⁻¹ B)ᵢᵢ = 1 − sᵢ (B⁻¹ s)ᵢ/(1 + q) of the others, q = sᵀ B⁻¹ s; they sum to the number of rows.
     pub(super) fn widened(mut self) -> Self {
-        let parts: Vec<f64> = self
-            .weighed()
-            .iter()
-            .zip(&self.moved)
-            .map(|(w, s)| w * s)
-            .collect();
+        let parts: Vec<f64> = self.weighed().iter().zip(&self.moved).map(|(w, s)| w * s).collect();
         let q: f64 = parts.iter().sum();
         for (at, part) in parts.iter().enumerate() {
             // Correlated numbers may share less than nothing with the speed.

@@ -49,11 +49,7 @@ impl Default for Selection {
     /// Both times of flight.
     fn default() -> Self {
         let observables = vec![Observable::Incident, Observable::Reflected];
-        Self {
-            case: None,
-            observables,
-            defaults: Defaults::default(),
-        }
+        Self { case: None, observables, defaults: Defaults::default() }
     }
 }
 
@@ -87,10 +83,7 @@ impl Data {
             let mut cells: Vec<(String, Option<f64>)> = vec![
                 ("speed_m_s".into(), Some(row.speed_m_s.value)),
                 ("speed_error_m_s".into(), Some(row.speed_m_s.sigma)),
-                (
-                    "speed_error_shots".into(),
-                    Some(row.speed_error_shots as f64),
-                ),
+                ("speed_error_shots".into(), Some(row.speed_error_shots as f64)),
                 ("shots".into(), Some(row.shots.0 as f64)),
                 ("tof_incident_shared_s".into(), Some(row.shared_s[0])),
                 ("tof_reflected_shared_s".into(), Some(row.shared_s[1])),
@@ -108,11 +101,7 @@ impl Data {
                 row.reflected_over_incident,
             ];
             for (of, mean) in Observable::ALL.into_iter().zip(&means) {
-                estimate(
-                    of.column(),
-                    mean.map(|mean| mean.mean),
-                    mean.map(|mean| mean.error),
-                );
+                estimate(of.column(), mean.map(|mean| mean.mean), mean.map(|mean| mean.error));
             }
             for (name, value) in AT_MEAN_SPEED.into_iter().zip(row.at_mean_speed_s) {
                 estimate(name, value.map(|of| of.value), value.map(|of| of.sigma));
@@ -124,15 +113,9 @@ impl Data {
             let (names, values): (Vec<String>, Vec<Option<f64>>) = cells.into_iter().unzip();
             titles = names;
             // A file has no cell for what is no number.
-            let cells = values
-                .into_iter()
-                .map(|value| Ok(value.filter(|value| value.is_finite())));
+            let cells = values.into_iter().map(|value| Ok(value.filter(|value| value.is_finite())));
             let (line, case) = (at as u64 + 2, curve.name.clone());
-            records.push(Record {
-                line,
-                case,
-                cells: cells.collect(),
-            });
+            records.push(Record { line, case, cells: cells.collect() });
         }
         titles.push("case".into());
         Self::from_records("measured curve", &titles, records, selection)
@@ -147,14 +130,8 @@ impl Data {
         let columns = Columns::of(titles, &selection.observables, file)?;
         let has_cases = titles.iter().any(|title| title == "case");
         let (case, records) = of_case(file, records, has_cases, selection.case.as_deref())?;
-        let reader = Reader {
-            file,
-            defaults: &selection.defaults,
-            columns,
-        };
-        let rows = records
-            .iter()
-            .filter_map(|record| reader.row(record).transpose());
+        let reader = Reader { file, defaults: &selection.defaults, columns };
+        let rows = records.iter().filter_map(|record| reader.row(record).transpose());
         let mut rows: Vec<DataRow> = rows.collect::<Result<_, _>>()?;
         reader.check_repeated(&rows)?;
         rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
@@ -162,11 +139,7 @@ impl Data {
             true => InferError::input(format!(
                 "{file}: no row has any of the numbers that are used (--use)"
             )),
-            false => Ok(Self {
-                file: file.to_owned(),
-                case,
-                rows,
-            }),
+            false => Ok(Self { file: file.to_owned(), case, rows }),
         }
     }
 }
@@ -187,9 +160,7 @@ fn records(text: &str) -> Result<(Vec<String>, Vec<Record>), String> {
     let is_titles = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
     let titles = text.lines().find(is_titles).unwrap_or_default();
     let mut marks = [b';', b'\t'].into_iter();
-    let delimiter = marks
-        .find(|mark| titles.as_bytes().contains(mark))
-        .unwrap_or(b',');
+    let delimiter = marks.find(|mark| titles.as_bytes().contains(mark)).unwrap_or(b',');
     let mut reader = ReaderBuilder::new()
         .delimiter(delimiter)
         .comment(Some(b'#'))
@@ -201,21 +172,14 @@ fn records(text: &str) -> Result<(Vec<String>, Vec<Record>), String> {
     let number = |text: &str| match (text, delimiter) {
         ("", _) => Ok(None),
         (text, b',') => text.parse().map(Some).map_err(|_| text.to_owned()),
-        _ => text
-            .replace(',', ".")
-            .parse()
-            .map(Some)
-            .map_err(|_| text.to_owned()),
+        _ => text.replace(',', ".").parse().map(Some).map_err(|_| text.to_owned()),
     };
     let mut all = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| error.to_string())?;
         all.push(Record {
             line: record.position().map_or(0, csv::Position::line),
-            case: case
-                .and_then(|at| record.get(at))
-                .unwrap_or_default()
-                .to_owned(),
+            case: case.and_then(|at| record.get(at)).unwrap_or_default().to_owned(),
             cells: record.iter().map(number).collect(),
         });
     }
@@ -236,10 +200,7 @@ fn of_case(
         }
     }
     let wrong = |what: &str| {
-        InferError::input(format!(
-            "{file}: {what}; its cases are {}",
-            cases.join(", ")
-        ))
+        InferError::input(format!("{file}: {what}; its cases are {}", cases.join(", ")))
     };
     let chosen = match (asked, &cases[..]) {
         (None, []) => String::new(),
@@ -250,10 +211,7 @@ fn of_case(
         (Some(name), cases) if cases.iter().any(|case| case == name) => name.to_owned(),
         (Some(name), _) => return wrong(&format!("it has no case `{name}`")),
     };
-    let records = records
-        .into_iter()
-        .filter(|record| record.case == chosen)
-        .collect();
+    let records = records.into_iter().filter(|record| record.case == chosen).collect();
     Ok((chosen, records))
 }
 
@@ -285,10 +243,7 @@ struct Columns {
 
 /// Times that `measure` takes to the mean speed, shot by shot, do not scatter with their speeds any
 /// more: they are read in place of plain means.
-const AT_MEAN_SPEED: [&str; 2] = [
-    "tof_incident_at_mean_speed_s",
-    "tof_reflected_at_mean_speed_s",
-];
+const AT_MEAN_SPEED: [&str; 2] = ["tof_incident_at_mean_speed_s", "tof_reflected_at_mean_speed_s"];
 
 /// Correlations of the errors of both plain means, and of both times at the mean speed.
 const CORRELATIONS: [&str; 2] = ["tof_correlation", "tof_at_mean_speed_correlation"];
@@ -303,10 +258,7 @@ impl Columns {
             let near = other_unit(titles, "speed", "_m_s");
             missing("speed_m_s", format!("speeds of the striker in m/s{near}"))
         })?;
-        let speed = Measured {
-            count: find(titles, &["speed_error_shots"]),
-            ..speed
-        };
+        let speed = Measured { count: find(titles, &["speed_error_shots"]), ..speed };
         let observables = Observable::ALL.map(|of| {
             let plain = of.column();
             let finer = AT_MEAN_SPEED.get(of.index()).and_then(|name| {
@@ -317,9 +269,7 @@ impl Columns {
                     ..measured(titles, name)?
                 })
             });
-            finer
-                .or_else(|| measured(titles, plain))
-                .filter(|_| wanted.contains(&of))
+            finer.or_else(|| measured(titles, plain)).filter(|_| wanted.contains(&of))
         });
         if observables.iter().all(Option::is_none) {
             let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
@@ -341,12 +291,8 @@ fn instead(titles: &[String], wanted: &[Observable]) -> String {
     let kinds = [(true, "times in s"), (false, "ratios of peaks")].into_iter();
     let kinds = kinds.filter(|(times, _)| wanted.iter().any(|of| of.is_time() == *times));
     let kinds: Vec<&str> = kinds.map(|(_, name)| name).collect();
-    let others = Observable::ALL
-        .into_iter()
-        .filter(|of| !wanted.contains(of));
-    let there = others
-        .map(Observable::column)
-        .find(|column| titles.iter().any(|t| t == column));
+    let others = Observable::ALL.into_iter().filter(|of| !wanted.contains(of));
+    let there = others.map(Observable::column).find(|column| titles.iter().any(|t| t == column));
     let hint = there.map_or_else(
         || other_unit(titles, "tof", "_s"),
         |column| format!("; `{column}` is there, but --use does not name it"),
@@ -363,23 +309,15 @@ fn other_unit(titles: &[String], beginning: &str, unit: &str) -> String {
 }
 
 fn find(titles: &[String], names: &[&str]) -> Option<Column> {
-    let at = names
-        .iter()
-        .find_map(|name| titles.iter().position(|title| title == name))?;
-    Some(Column {
-        at,
-        title: titles[at].clone(),
-    })
+    let at = names.iter().find_map(|name| titles.iter().position(|title| title == name))?;
+    Some(Column { at, title: titles[at].clone() })
 }
 
 /// The column of a quantity, and that of its error: `x_s_err`, `x_err_s`, or the same with `error`
 /// or `sigma`.
 fn measured(titles: &[String], name: &str) -> Option<Measured> {
     let stem = |unit: &&str| name.strip_suffix(*unit).filter(|stem| !stem.is_empty());
-    let unit = ["_m_s", "_s"]
-        .into_iter()
-        .find(|unit| stem(unit).is_some())
-        .unwrap_or("");
+    let unit = ["_m_s", "_s"].into_iter().find(|unit| stem(unit).is_some()).unwrap_or("");
     let stem = stem(&unit).unwrap_or(name);
     let of = |word: &str| [format!("{name}_{word}"), format!("{stem}_{word}{unit}")];
     let names: Vec<String> = ["error", "err", "sigma"].into_iter().flat_map(of).collect();
@@ -406,9 +344,7 @@ pub fn wrong_speed(value: f64) -> Option<String> {
     // Further digits are rounding.
     let value: f64 = format!("{value:.8e}").parse().unwrap_or(value);
     if value <= 0.0 || !value.is_finite() {
-        return Some(format!(
-            "{value} is no speed of a striker; expected more than 0 m/s"
-        ));
+        return Some(format!("{value} is no speed of a striker; expected more than 0 m/s"));
     }
     is_fast.then(|| {
         format!("{value} m/s is no speed of a striker; it looks like mm/s or cm/s, expected m/s")
@@ -420,20 +356,14 @@ fn wrong_value(of: Observable, value: f64) -> Option<String> {
     if value <= 0.0 || !value.is_finite() {
         return Some(format!("{value} is no {name}; expected a positive number"));
     }
-    let unit = if value >= MICROSECONDS_FROM {
-        "microseconds"
-    } else {
-        "milliseconds"
-    };
+    let unit = if value >= MICROSECONDS_FROM { "microseconds" } else { "milliseconds" };
     (of.is_time() && value > MOST_TIME_S)
         .then(|| format!("{value} s is no {name}; it looks like {unit}, expected seconds"))
 }
 
 fn wrong_sigma(of: Observable, Estimate { value, sigma }: Estimate) -> Option<String> {
     if sigma <= 0.0 || !sigma.is_finite() {
-        return Some(format!(
-            "{sigma} is no uncertainty; expected a standard error above 0"
-        ));
+        return Some(format!("{sigma} is no uncertainty; expected a standard error above 0"));
     }
     let unit = if of.is_time() { " s" } else { "" };
     (sigma > value).then(|| {
@@ -460,10 +390,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn wrong<T>(&self, line: u64, column: &Column, what: &str) -> Result<T, InferError> {
-        InferError::input(format!(
-            "{}, line {line}, {}: {what}",
-            self.file, column.title
-        ))
+        InferError::input(format!("{}, line {line}, {}: {what}", self.file, column.title))
     }
 
     fn check(&self, wrong: Option<String>, line: u64, column: &Column) -> Result<(), InferError> {
@@ -509,40 +436,20 @@ impl Reader<'_> {
             );
             return self.wrong(line, column, &what);
         }
-        let row = DataRow {
-            line,
-            speed_m_s,
-            values,
-            correlation,
-            freedom,
-        };
+        let row = DataRow { line, speed_m_s, values, correlation, freedom };
         Ok(values.iter().any(Option::is_some).then_some(row))
     }
 
     fn speed(&self, record: &Record) -> Result<Estimate, InferError> {
-        let (
-            line,
-            Measured {
-                value: column,
-                sigma,
-                ..
-            },
-        ) = (record.line, &self.columns.speed);
+        let (line, Measured { value: column, sigma, .. }) = (record.line, &self.columns.speed);
         let Some(value) = self.number(record, column)? else {
             return self.wrong(line, column, "no speed; expected one in m/s");
         };
         self.check(wrong_speed(value), line, column)?;
         let known = self.optional(record, sigma.as_ref())?;
         let sigma_m_s = known.or(self.defaults.speed_m_s).unwrap_or(0.0);
-        let speed = Estimate {
-            value,
-            sigma: sigma_m_s,
-        };
-        self.check(
-            wrong_speed_sigma(speed),
-            line,
-            sigma.as_ref().unwrap_or(column),
-        )?;
+        let speed = Estimate { value, sigma: sigma_m_s };
+        self.check(wrong_speed_sigma(speed), line, sigma.as_ref().unwrap_or(column))?;
         Ok(speed)
     }
 
@@ -581,10 +488,7 @@ impl Reader<'_> {
     /// as one from an option is. Of an error part of which all shots share, and which is known,
     /// Satterthwaite's: the rest alone scatters.
     fn freedom(&self, record: &Record, columns: &Measured, sigma: f64) -> Result<f64, InferError> {
-        let own = columns
-            .sigma
-            .as_ref()
-            .and_then(|column| record.cells.get(column.at));
+        let own = columns.sigma.as_ref().and_then(|column| record.cells.get(column.at));
         let has_own = own.is_some_and(|cell| !matches!(cell, Ok(None)));
         match self.defaults.scatter {
             Scatter::Of(shots) => return Ok(f64::from(shots) - 1.0),
@@ -594,9 +498,7 @@ impl Reader<'_> {
         let Some(shots) = self.shots(record, columns)? else {
             return Ok(f64::INFINITY);
         };
-        let shared = self
-            .optional(record, columns.shared.as_ref())?
-            .unwrap_or(0.0);
+        let shared = self.optional(record, columns.shared.as_ref())?.unwrap_or(0.0);
         let scattered = 1.0 - (shared / sigma).powi(2).min(1.0);
         // One shot has no scatter, nor has none: the error is known from elsewhere.
         Ok(match shots > 1.0 {

@@ -75,10 +75,7 @@ impl FreeNumber {
             name: name.to_owned(),
             form: if law { Form::PowerLaw } else { form },
             bounds: start::bounds(&found),
-            reference: found
-                .target
-                .path()
-                .and_then(|path| experiment.reference(path)),
+            reference: found.target.path().and_then(|path| experiment.reference(path)),
             unit: found.unit,
             target: found.target,
             start,
@@ -231,17 +228,14 @@ impl FreeNumbers {
 
     /// Whether the number of this path is among them.
     pub(crate) fn is_free(&self, path: &str) -> bool {
-        self.0
-            .iter()
-            .any(|number| number.target.path() == Some(path))
+        self.0.iter().any(|number| number.target.path() == Some(path))
     }
 
     /// Parameters of all numbers over data at these speeds in m/s.
     #[must_use]
     pub fn parameters(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
         let all = self.0.iter();
-        all.flat_map(|number| number.parameters(speeds_m_s))
-            .collect()
+        all.flat_map(|number| number.parameters(speeds_m_s)).collect()
     }
 
     /// What a point sets at a speed in m/s, of `speeds` the `row`th.
@@ -251,10 +245,7 @@ impl FreeNumbers {
         speeds: usize,
         (row, speed_m_s): (usize, f64),
     ) -> Settings {
-        let mut settings = Settings {
-            wall_gain: 1.0,
-            ..Settings::default()
-        };
+        let mut settings = Settings { wall_gain: 1.0, ..Settings::default() };
         let mut rest = point;
         for number in &self.0 {
             let count = number.parameter_count(speeds).min(rest.len());

@@ -12,27 +12,15 @@ pub const SHORT_NAMES: [(&str, &str, &str); 12] = [
     ("eta1", "shear viscosity", "shear_viscosity"),
     ("eta2", "bulk viscosity", "bulk_viscosity"),
     ("K", "Hertz stiffness", "elastic_hertz.stiffness"),
-    (
-        "A",
-        "relaxation time",
-        "damping_viscoelastic.relaxation_time",
-    ),
+    ("A", "relaxation time", "damping_viscoelastic.relaxation_time"),
     ("B", "cubic damping", "damping_cubic.coefficient"),
     (
         "preload",
         "push on bead 1; give it one by a table [near_end] with `push` and `force`",
         "near_end.force",
     ),
-    (
-        WALL_GAIN,
-        "sensitivity of the wall's sensor over that of the bead's",
-        "",
-    ),
-    (
-        SENSOR_GAIN,
-        "sensitivity of the bead's sensor with its amplifier",
-        "",
-    ),
+    (WALL_GAIN, "sensitivity of the wall's sensor over that of the bead's", ""),
+    (SENSOR_GAIN, "sensitivity of the bead's sensor with its amplifier", ""),
     ("low_pass", "corner of the amplifier's low-pass", LOW_PASS),
 ];
 
@@ -70,10 +58,7 @@ impl Target {
     pub(super) fn set(&self, value: f64, settings: &mut Settings) {
         match self {
             Self::Number(path) => settings.numbers.push((path.clone(), value)),
-            Self::Scaled {
-                prefactor,
-                exponent,
-            } => {
+            Self::Scaled { prefactor, exponent } => {
                 settings.numbers.push((prefactor.clone(), value));
                 settings.numbers.push((exponent.clone(), 0.0));
             }
@@ -116,9 +101,8 @@ pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, InferEr
     match short {
         Some((short, what, end)) => of_short(experiment, name, owner, (short, what, end)),
         None => {
-            let place = experiment
-                .place(name)
-                .map_err(|error| InferError::from(error).about(name))?;
+            let place =
+                experiment.place(name).map_err(|error| InferError::from(error).about(name))?;
             of_place(name, place)
         }
     }
@@ -136,9 +120,7 @@ fn of_place(name: &str, place: Place) -> Result<Found, InferError> {
         ));
     }
     match place.is_count {
-        true => InferError::input(format!(
-            "{name} counts something and can't vary continuously"
-        )),
+        true => InferError::input(format!("{name} counts something and can't vary continuously")),
         false => Ok(Found {
             given: place.value.map(|value| (value, 0.0)),
             unit: plain(place.unit),
@@ -172,10 +154,7 @@ fn of_short(
         // Of the chain: materials of other cases are not meant.
         None => {
             let path = place.path.strip_prefix("materials.");
-            path.is_none_or(|path| {
-                used.iter()
-                    .any(|name| path.starts_with(&format!("{name}.")))
-            })
+            path.is_none_or(|path| used.iter().any(|name| path.starts_with(&format!("{name}."))))
         }
         Some(owners) => owners.iter().any(|owner| place.path.starts_with(owner)),
     };
@@ -202,10 +181,7 @@ fn of_short(
             let own = places.iter().find(|other| other.path == exponent);
             let own = own.and_then(|place| place.value).unwrap_or(0.0);
             Ok(Found {
-                target: Target::Scaled {
-                    prefactor: place.path.clone(),
-                    exponent,
-                },
+                target: Target::Scaled { prefactor: place.path.clone(), exponent },
                 unit: plain(place.unit.clone()),
                 given: place.value.map(|value| (value, own)),
             })

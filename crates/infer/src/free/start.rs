@@ -17,9 +17,7 @@ const MOST_POISSON_RATIO: f64 = 0.999;
 /// The value to start from: asked for, given in the file, or what the file's
 /// materials make of it.
 pub(super) fn of(experiment: &Experiment, found: &Found, asked: Option<f64>) -> Option<(f64, f64)> {
-    let given = found
-        .given
-        .or_else(|| Some((derived(experiment, found)?, 0.0)));
+    let given = found.given.or_else(|| Some((derived(experiment, found)?, 0.0)));
     match asked {
         Some(value) => Some((value, given.map_or(0.0, |(_, exponent)| exponent))),
         None => given,

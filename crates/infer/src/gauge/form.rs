@@ -94,8 +94,7 @@ impl PowerForm {
     }
 
     fn fits(&self) -> bool {
-        self.chi_square
-            .is_none_or(|found| found.probability >= LEAST_PROBABILITY)
+        self.chi_square.is_none_or(|found| found.probability >= LEAST_PROBABILITY)
     }
 
     /// Warnings on the laws: curves that do not follow them, or do not determine them.
@@ -183,21 +182,12 @@ impl Gauge {
         let laws = &wet.parameters()[self.common() + own.len()..];
         let fit_result = dry.parameters().iter().chain(&own).zip(start);
         let mut parameters: Vec<Parameter> = fit_result
-            .map(|(parameter, value)| Parameter {
-                start: *value,
-                ..parameter.clone()
-            })
+            .map(|(parameter, value)| Parameter { start: *value, ..parameter.clone() })
             .collect();
         parameters.extend(started(laws, &start[count + own.len()..]));
         let of_wet = (0..self.common()).chain(count..parameters.len());
-        let wet_part = Part {
-            supplies: of_wet.map(Supply::Free).collect(),
-            problem: wet,
-        };
-        let dry_part = Part {
-            supplies: (0..count).map(Supply::Free).collect(),
-            problem: dry,
-        };
+        let wet_part = Part { supplies: of_wet.map(Supply::Free).collect(), problem: wet };
+        let dry_part = Part { supplies: (0..count).map(Supply::Free).collect(), problem: dry };
         Joint::new(parameters, vec![dry_part, wet_part])
     }
 
@@ -281,20 +271,12 @@ impl Gauge {
 
 /// A fit that shows which start is best: to a tenth of a standard error.
 fn rough() -> Fitting {
-    Fitting {
-        tolerance: 0.005,
-        iterations: 15,
-        ..Fitting::default()
-    }
+    Fitting { tolerance: 0.005, iterations: 15, ..Fitting::default() }
 }
 
 /// A fit to a thirtieth of a standard error: a hundredth of what would change a verdict.
 fn accurate() -> Fitting {
-    Fitting {
-        tolerance: 0.0005,
-        iterations: 40,
-        ..Fitting::default()
-    }
+    Fitting { tolerance: 0.0005, iterations: 40, ..Fitting::default() }
 }
 
 /// Laws of other minima that fit as well as the best, the first.
@@ -302,10 +284,7 @@ fn others(minima: &[Fit]) -> Vec<[f64; LAWS]> {
     let mut distinct: Vec<[f64; LAWS]> = Vec::new();
     let good = |other: &&Fit| other.cost < minima[0].cost + AS_GOOD;
     for laws in minima.iter().filter(good).map(laws_of) {
-        if distinct
-            .iter()
-            .all(|known| (known[2] - laws[2]).abs() > SAME)
-        {
+        if distinct.iter().all(|known| (known[2] - laws[2]).abs() > SAME) {
             distinct.push(laws);
         }
     }

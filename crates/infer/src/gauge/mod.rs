@@ -92,11 +92,7 @@ impl Gauge {
         let value = |name: &str| -> Result<f64, InferError> {
             let dry = FreeNumber::find(chains.dry, &format!("dry.{name}"), None);
             let wet = |_| FreeNumber::find(chains.wet, &format!("wet.{name}"), None);
-            Ok(dry
-                .or_else(wet)?
-                .parameters(&[])
-                .first()
-                .map_or(f64::NAN, |p| p.start))
+            Ok(dry.or_else(wet)?.parameters(&[]).first().map_or(f64::NAN, |p| p.start))
         };
         Ok(Self {
             own: chains.own.len(),
@@ -147,11 +143,7 @@ impl Gauge {
         let end = numbers.len() - CONTACT;
         let own = numbers[end - self.own..end].iter();
         let own = own.flat_map(|number| number.parameters(speeds_m_s));
-        own.map(|p| Parameter {
-            name: format!("{} (wet)", p.name),
-            ..p
-        })
-        .collect()
+        own.map(|p| Parameter { name: format!("{} (wet)", p.name), ..p }).collect()
     }
 
     /// How many of the dry fit's parameters hold for both chains: the first.
@@ -165,11 +157,7 @@ impl Gauge {
     /// What to add to data that do not separate K from A.
     #[must_use]
     pub fn to_add(&self) -> Option<&'static str> {
-        let has_both = self
-            .data
-            .rows
-            .iter()
-            .any(|row| row.observables().count() > 1);
+        let has_both = self.data.rows.iter().any(|row| row.observables().count() > 1);
         (!has_both && !self.data.has(Observable::Reflected)).then_some(
             "add reflected times of flight (a column tof_reflected_s with its errors), or ratios of \
              the returning to the passing peak (--use incident,returning-ratio); or take K and A for power \
@@ -218,9 +206,7 @@ impl Gauge {
 fn wet_radius_m(experiment: &Experiment) -> Option<f64> {
     let section = experiment.sections().iter().find(|section| section.wet)?;
     let stiffness = FreeNumber::find(experiment, "wet.K", None).ok();
-    let reference = stiffness
-        .as_ref()
-        .and_then(|number| number.reference()?.contact);
+    let reference = stiffness.as_ref().and_then(|number| number.reference()?.contact);
     let (chain, _) = experiment.chain(None).ok()?;
     Some(chain.pair(reference.unwrap_or(section.from))?.radius_m)
 }
@@ -345,9 +331,7 @@ impl Gauge {
     /// K in N/m^{3/2} and A in s that an oil gives at the speeds of the wet data.
     fn contacts_of(&self, oil: &Oil) -> [Vec<f64>; 2] {
         let speeds = self.data.speeds_m_s().into_iter();
-        let (stiffness, relaxation) = speeds
-            .map(|speed| oil.contact(self.radius_m, speed))
-            .unzip();
+        let (stiffness, relaxation) = speeds.map(|speed| oil.contact(self.radius_m, speed)).unzip();
         [stiffness, relaxation]
     }
 
@@ -356,33 +340,18 @@ impl Gauge {
         let speeds = self.data.speeds_m_s();
         let [stiffness, relaxation] = self.contacts_of(oil);
         let own = self.wet_own(&speeds);
-        let of_wet = (0..self.common())
-            .chain(count..count + own.len())
-            .map(Supply::Free);
+        let of_wet = (0..self.common()).chain(count..count + own.len()).map(Supply::Free);
         let contacts = stiffness.into_iter().chain(relaxation).map(Supply::Fixed);
         let supplies = of_wet.chain(contacts).collect();
-        let wet_part = Part {
-            problem: wet.clone(),
-            supplies,
-        };
+        let wet_part = Part { problem: wet.clone(), supplies };
         let supplies = (0..count).map(Supply::Free).collect();
-        let dry_part = Part {
-            problem: self.dry.clone(),
-            supplies,
-        };
+        let dry_part = Part { problem: self.dry.clone(), supplies };
         let pairs = self.dry.parameters().iter().zip(&self.dry_fit.point);
-        let dry = pairs.map(|(parameter, value)| Parameter {
-            start: *value,
-            ..parameter.clone()
-        });
+        let dry = pairs.map(|(parameter, value)| Parameter { start: *value, ..parameter.clone() });
         let joint = Joint::new(dry.chain(own.clone()).collect(), vec![dry_part, wet_part]);
         // Two or three numbers that start at their dry values, to a hundredth of what would change a
         // verdict.
-        let how = Fitting {
-            tolerance: 0.01,
-            iterations: 20,
-            ..Fitting::default()
-        };
+        let how = Fitting { tolerance: 0.01, iterations: 20, ..Fitting::default() };
         let fit_result = fit(&joint, &how)?;
         let first = self.dry.residual_count();
         let residuals = &fit_result.residuals[first..];
@@ -402,14 +371,11 @@ impl Gauge {
         let Some(chi_square) = chi_square_of(residuals.iter().copied(), own.len()) else {
             return InferError::input("its distance is not finite");
         };
-        let own = own
-            .into_iter()
-            .enumerate()
-            .map(|(at, parameter)| NuisanceParameter {
-                parameter,
-                value: fit_result.point[count + at],
-                standard_error: sd[count + at],
-            });
+        let own = own.into_iter().enumerate().map(|(at, parameter)| NuisanceParameter {
+            parameter,
+            value: fit_result.point[count + at],
+            standard_error: sd[count + at],
+        });
         Ok(Match {
             oil: oil.name.clone(),
             distance: (chi_square.value / chi_square.freedom as f64).sqrt(),
@@ -450,18 +416,11 @@ impl GaugeLaws {
     /// Fewer than three such rows.
     pub fn through(rows: &[WetRow]) -> Result<Self, FitError> {
         let known = rows.iter().filter_map(|row| {
-            let contact = row
-                .contact
-                .as_ref()
-                .ok()
-                .filter(|contact| contact.is_known())?;
+            let contact = row.contact.as_ref().ok().filter(|contact| contact.is_known())?;
             Some((row.speed_m_s, &contact.first))
         });
         let known: Vec<(f64, &Pair)> = known.collect();
-        Ok(Self {
-            stiffness: law(&known, 0)?,
-            relaxation: law(&known, 1)?,
-        })
+        Ok(Self { stiffness: law(&known, 0)?, relaxation: law(&known, 1)? })
     }
 }
 
@@ -472,9 +431,7 @@ fn law(known: &[(f64, &Pair)], of: usize) -> Result<SharedLaw, FitError> {
     let speeds: Vec<f64> = known.iter().map(|(speed, _)| *speed).collect();
     let relative: Vec<f64> = known.iter().map(|(_, c)| c.own[of][of].sqrt()).collect();
     let through = |shift: &dyn Fn(&Pair) -> f64| {
-        let values = known
-            .iter()
-            .map(|(_, pair)| (pair.ln[of] + shift(pair)).exp());
+        let values = known.iter().map(|(_, pair)| (pair.ln[of] + shift(pair)).exp());
         let values: Vec<f64> = values.collect();
         let sigmas: Vec<f64> = values.iter().zip(&relative).map(|(v, r)| v * r).collect();
         power_law(&speeds, &values, Some(&sigmas))

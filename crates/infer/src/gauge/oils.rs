@@ -61,15 +61,10 @@ impl Oil {
     #[must_use]
     pub fn contact(&self, reduced_radius_m: f64, speed_m_s: f64) -> (f64, f64) {
         match self.description {
-            Description::Contact {
-                stiffness,
-                relaxation_s,
-            } => (stiffness.at(speed_m_s), relaxation_s.at(speed_m_s)),
-            Description::Material {
-                young_modulus_pa,
-                poisson_ratio,
-                viscosity_pa_s,
-            } => {
+            Description::Contact { stiffness, relaxation_s } => {
+                (stiffness.at(speed_m_s), relaxation_s.at(speed_m_s))
+            }
+            Description::Material { young_modulus_pa, poisson_ratio, viscosity_pa_s } => {
                 let viscosity = viscosity_pa_s.at(speed_m_s);
                 let material = Material {
                     young_modulus_pa,
@@ -104,22 +99,15 @@ pub fn known_oils() -> Result<Vec<Oil>, InferError> {
 /// of an effective material nor all of a contact.
 pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, InferError> {
     let text = with_plain_ends(text);
-    let mut reader = ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(Trim::All)
-        .from_reader(text.as_bytes());
+    let mut reader =
+        ReaderBuilder::new().comment(Some(b'#')).trim(Trim::All).from_reader(text.as_bytes());
     let wrong = |line: u64, what: String| InferError::Input(format!("{file}, line {line}: {what}"));
-    let titles = reader
-        .headers()
-        .map_err(|error| wrong(1, error.to_string()))?;
+    let titles = reader.headers().map_err(|error| wrong(1, error.to_string()))?;
     let titles = titles.clone();
     let oil = |record: Result<StringRecord, csv::Error>| {
         let record = record.map_err(|error| wrong(0, error.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let row = Row {
-            titles: &titles,
-            record: &record,
-        };
+        let row = Row { titles: &titles, record: &record };
         row.oil().map_err(|what| wrong(line, what))
     };
     let mut all: Vec<Oil> = Vec::new();
@@ -128,10 +116,8 @@ pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, InferError> {
         let line = line.map_or(at as u64 + 2, csv::Position::line);
         let found = oil(record)?;
         if all.iter().any(|known| known.name == found.name) {
-            let what = format!(
-                "{} stands in the table twice: give each oil its own name",
-                found.name
-            );
+            let what =
+                format!("{} stands in the table twice: give each oil its own name", found.name);
             return Err(wrong(line, what));
         }
         all.push(found);
@@ -171,10 +157,7 @@ impl Row<'_> {
             Some(value) if prefactor == "poisson_prefactor" && value >= BELOW => Err(format!(
                 "{prefactor} is {value}, the Poisson ratio at 1 m/s; expected less than {BELOW}"
             )),
-            Some(value) if value > 0.0 => Ok(Some(Law {
-                prefactor: value,
-                exponent,
-            })),
+            Some(value) if value > 0.0 => Ok(Some(Law { prefactor: value, exponent })),
             Some(value) => Err(format!("{prefactor} is {value}; expected more than 0")),
         }
     }
@@ -201,10 +184,9 @@ impl Row<'_> {
                     viscosity_pa_s,
                 }
             }
-            ((None, None, None), (Some(stiffness), Some(relaxation_s))) => Description::Contact {
-                stiffness,
-                relaxation_s,
-            },
+            ((None, None, None), (Some(stiffness), Some(relaxation_s))) => {
+                Description::Contact { stiffness, relaxation_s }
+            }
             _ => {
                 return Err(format!(
                     "{name}: expected either young_modulus_pa, poisson_prefactor and \
@@ -212,10 +194,6 @@ impl Row<'_> {
                 ));
             }
         };
-        Ok(Oil {
-            name: name.to_owned(),
-            description,
-            source: self.text("source").to_owned(),
-        })
+        Ok(Oil { name: name.to_owned(), description, source: self.text("source").to_owned() })
     }
 }

@@ -64,9 +64,7 @@ impl Pair {
         let mut sum = self.own;
         for shift in &self.shared {
             for (row, x) in sum.iter_mut().zip(shift) {
-                row.iter_mut()
-                    .zip(shift)
-                    .for_each(|(entry, y)| *entry += x * y);
+                row.iter_mut().zip(shift).for_each(|(entry, y)| *entry += x * y);
             }
         }
         sum
@@ -161,12 +159,7 @@ impl Gauge {
         // What follows them moves nothing but the dry chain's own numbers.
         let shifts = shifts(&self.dry_covariance.matrix);
         let moved = |shift: &Vec<f64>| -> Vec<f64> {
-            self.dry_fit
-                .point
-                .iter()
-                .zip(shift)
-                .map(|(x, s)| x + s)
-                .collect()
+            self.dry_fit.point.iter().zip(shift).map(|(x, s)| x + s).collect()
         };
         let shifted: Vec<Vec<f64>> = shifts[..self.common()].iter().map(moved).collect();
         let numbers = (0..self.data.rows.len()).into_par_iter();
@@ -176,14 +169,9 @@ impl Gauge {
         let row = |(at, (solved, chosen)): (usize, (Solved, Chosen))| {
             let row = &self.data.rows[at];
             let contact = solved.and_then(|found| {
-                self.contact(at, found, chosen, &shifted)
-                    .map_err(|error| error.to_string())
+                self.contact(at, found, chosen, &shifted).map_err(|error| error.to_string())
             });
-            WetRow {
-                line: row.line,
-                speed_m_s: row.speed_m_s.value,
-                contact,
-            }
+            WetRow { line: row.line, speed_m_s: row.speed_m_s.value, contact }
         };
         all.map(row).collect()
     }
@@ -200,10 +188,7 @@ impl Gauge {
         let row = |at: usize| {
             let pairs = solved[at].as_ref().ok()?.0.iter();
             let ln_speed = self.data.rows[at].speed_m_s.value.ln();
-            Some((
-                at,
-                (ln_speed, pairs.map(|pair| pair.point[1].ln()).collect()),
-            ))
+            Some((at, (ln_speed, pairs.map(|pair| pair.point[1].ln()).collect())))
         };
         let both = (0..solved.len()).filter(|at| self.free(*at) == Free::Both);
         let mut rows: Vec<(usize, Row)> = both.filter_map(row).collect();
@@ -266,11 +251,7 @@ impl Gauge {
             of.map_or(0.0, |c| c / (point[i] * point[j]))
         };
         let own = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
-        Ok(Pair {
-            ln: point.map(f64::ln),
-            own,
-            shared,
-        })
+        Ok(Pair { ln: point.map(f64::ln), own, shared })
     }
 
     /// A row against the wet model with K and A from `at`, A within the range searched, the dry
@@ -281,19 +262,12 @@ impl Gauge {
         (free, at): (Free, [f64; 2]),
         dry: &[f64],
     ) -> Joint {
-        let data = Data {
-            rows: vec![self.data.rows[row].clone()],
-            ..self.data.clone()
-        };
+        let data = Data { rows: vec![self.data.rows[row].clone()], ..self.data.clone() };
         let numbers = self.wet.numbers().as_slice();
         let contact = numbers[numbers.len() - CONTACT..].iter();
         let contact = contact.flat_map(|number| number.parameters(&[])).zip(at);
         let mut start: Vec<Parameter> = contact
-            .map(|(parameter, value)| Parameter {
-                start: value,
-                scale: value,
-                ..parameter
-            })
+            .map(|(parameter, value)| Parameter { start: value, scale: value, ..parameter })
             .collect();
         // Shots through contacts that hardly move take ages.
         if let Some(relaxation) = start.last_mut() {
@@ -329,30 +303,21 @@ impl Gauge {
             first.push(residuals?.standardised.first().copied().unwrap_or(f64::NAN));
         }
         let exponent = (first[2] - first[3]) / (first[0] - first[1]);
-        Ok(Combination {
-            exponent,
-            reference_s: point[1],
-        })
+        Ok(Combination { exponent, reference_s: point[1] })
     }
 
     /// All solutions that the row's numbers do not reject: times of flight need not determine K and
     /// A uniquely.
     fn solutions(&self, row: usize, shifted: &[Vec<f64>]) -> Solved {
         let (free, dry) = (self.free(row), &self.dry_fit.point);
-        let scanned = if free == Free::Both {
-            self.scan(row)
-        } else {
-            None
-        };
+        let scanned = if free == Free::Both { self.scan(row) } else { None };
         let (starts, scan) = scanned.unzip();
         let along = |start| self.solve(row, Free::StiffnessAlone, dry, start);
         let [stiffness, relaxation] = self.dry_contact;
         let solved: Vec<Result<Solution, InferError>> = match (starts, free) {
             (Some(starts), _) => {
                 let starts = starts.into_iter().take(POLISHED);
-                starts
-                    .map(|start| self.solve(row, free, dry, start))
-                    .collect()
+                starts.map(|start| self.solve(row, free, dry, start)).collect()
             }
             (None, Free::StiffnessAlone) => vec![along(self.dry_contact)],
             // Without a time no line can be followed: first the K that suits an A, then both.
@@ -367,10 +332,7 @@ impl Gauge {
             Free::StiffnessAlone => solution,
         };
         let solved = solved.into_iter().map(allowed).collect();
-        Ok((
-            distinct(solved, self.data.rows[row].observables().count(), free)?,
-            scan,
-        ))
+        Ok((distinct(solved, self.data.rows[row].observables().count(), free)?, scan))
     }
 
     /// A solution whose chi-square allows for the errors of the dry contacts' numbers.
@@ -383,10 +345,7 @@ impl Gauge {
         let mut moves = Vec::new();
         for dry in shifted {
             let problem = self.row_problem(row, (Free::Both, solution.point), dry);
-            let found = problem
-                .residuals(&[solution.point.to_vec()])
-                .remove(0)?
-                .standardised;
+            let found = problem.residuals(&[solution.point.to_vec()]).remove(0)?.standardised;
             let pairs = found.iter().zip(&solution.residuals);
             moves.push(pairs.map(|(a, b)| a - b).collect::<Vec<f64>>());
         }
@@ -405,20 +364,13 @@ impl Gauge {
         let problem = self.row_problem(row, (free, start), dry);
         // Two equations with two unknowns are solved in some ten iterations, to a thousandth of a
         // standard error.
-        let how = Fitting {
-            iterations: 30,
-            tolerance: 1e-6,
-            ..Fitting::default()
-        };
+        let how = Fitting { iterations: 30, tolerance: 1e-6, ..Fitting::default() };
         let fit_result = fit(&problem, &how)?;
         let columns = fit_result.jacobian.columns.iter().zip(&fit_result.point);
         let slopes = columns.map(|(column, at)| column.iter().map(|slope| slope * at).collect());
         Ok(Solution {
             covariance: Covariance::new(problem.parameters(), &fit_result),
-            point: [
-                fit_result.point[0],
-                fit_result.point.get(1).copied().unwrap_or(start[1]),
-            ],
+            point: [fit_result.point[0], fit_result.point.get(1).copied().unwrap_or(start[1])],
             chi_square: fit_result.chi_square(),
             is_beyond: free == Free::Both && fit_result.is_bound(1),
             slopes: slopes.collect(),
@@ -429,19 +381,14 @@ impl Gauge {
     /// A statement on rows with more than one solution.
     #[must_use]
     pub fn ambiguous(&self, rows: &[WetRow]) -> Option<String> {
-        let solved = || {
-            rows.iter()
-                .filter_map(|row| Some((row.speed_m_s, row.contact.as_ref().ok()?)))
-        };
+        let solved =
+            || rows.iter().filter_map(|row| Some((row.speed_m_s, row.contact.as_ref().ok()?)));
         if solved().all(|(_, contact)| contact.others.is_empty()) {
             return None;
         }
         let at = |of: &dyn Fn(&Contact) -> bool| -> String {
             let speeds = solved().filter(|(_, contact)| of(contact));
-            speeds
-                .map(|(speed, _)| format!("{speed:.4}"))
-                .collect::<Vec<_>>()
-                .join(", ")
+            speeds.map(|(speed, _)| format!("{speed:.4}")).collect::<Vec<_>>().join(", ")
         };
         let mut text =
             "At some speeds more than one solution (K, A) fits; all found are listed.".to_owned();
@@ -563,20 +510,14 @@ fn allowing(residuals: &[f64], slopes: &[Vec<f64>], moves: &[Vec<f64>]) -> f64 {
     };
     let (pairs, dry) = (slopes.len(), moves.len());
     let numbered = slopes.iter().enumerate();
-    let pair: Vec<Vec<f64>> = numbered
-        .map(|(k, c)| with(c, SMALL, pairs, Some(k)))
-        .collect();
+    let pair: Vec<Vec<f64>> = numbered.map(|(k, c)| with(c, SMALL, pairs, Some(k))).collect();
     let rights = moves.iter().map(|d| with(d, -1.0, pairs, None)).collect();
     let weights = least_squares(pair.clone(), rights);
-    let left = moves
-        .iter()
-        .zip(&weights)
-        .enumerate()
-        .map(|(at, (d, weights))| {
-            let taken = combine(&pair, weights);
-            let rest: Vec<f64> = d.iter().zip(taken).map(|(d, taken)| d + taken).collect();
-            with(&rest, 1.0, dry, Some(at))
-        });
+    let left = moves.iter().zip(&weights).enumerate().map(|(at, (d, weights))| {
+        let taken = combine(&pair, weights);
+        let rest: Vec<f64> = d.iter().zip(taken).map(|(d, taken)| d + taken).collect();
+        with(&rest, 1.0, dry, Some(at))
+    });
     let left: Vec<Vec<f64>> = left.collect();
     let own = with(residuals, 1.0, dry, None);
     let right = own.iter().map(|x| -x).collect();
@@ -584,10 +525,7 @@ fn allowing(residuals: &[f64], slopes: &[Vec<f64>], moves: &[Vec<f64>]) -> f64 {
         return dot(&own, &own);
     };
     let taken = combine(&left, &weights);
-    let rest = own
-        .iter()
-        .enumerate()
-        .map(|(at, x)| x + taken.get(at).unwrap_or(&0.0));
+    let rest = own.iter().enumerate().map(|(at, x)| x + taken.get(at).unwrap_or(&0.0));
     let rest: Vec<f64> = rest.collect();
     dot(&rest, &rest)
 }

@@ -62,10 +62,7 @@ impl Gauge {
             line.extend(self.places(row, first, halves));
             line.sort_by(|a, b| a.ln_a.total_cmp(&b.ln_a));
         }
-        let scan = Scan {
-            between_s,
-            missing_s: missing(&line),
-        };
+        let scan = Scan { between_s, missing_s: missing(&line) };
         Some((candidates(&line), scan))
     }
 
@@ -78,10 +75,7 @@ impl Gauge {
     /// The line at some ln A, each with a guess of ln K.
     fn places(&self, row: usize, first: Observable, at: Vec<(f64, f64)>) -> Vec<Place> {
         let met = self.met(row, first, &at);
-        let known = at
-            .iter()
-            .zip(&met)
-            .filter_map(|((a, _), k)| Some((*a, (*k)?)));
+        let known = at.iter().zip(&met).filter_map(|((a, _), k)| Some((*a, (*k)?)));
         let points: Vec<Vec<f64>> = known.map(|(a, k)| vec![k.exp(), a.exp()]).collect();
         let start = (Free::Both, self.dry_contact);
         let problem = self.row_problem(row, start, &self.dry_fit.point);
@@ -105,10 +99,7 @@ impl Gauge {
             if open.is_empty() {
                 break;
             }
-            let pairs = open
-                .iter()
-                .map(|n| [roots[*n].x, at[*n].0])
-                .collect::<Vec<_>>();
+            let pairs = open.iter().map(|n| [roots[*n].x, at[*n].0]).collect::<Vec<_>>();
             let misses = self.misses(row, first, &pairs);
             for (number, miss) in open.into_iter().zip(misses) {
                 roots[number].seen(miss, near);
@@ -144,12 +135,7 @@ struct Root {
 
 impl Root {
     fn new(x: f64) -> Self {
-        Self {
-            x,
-            miss: None,
-            slope: SLOPE,
-            failed: false,
-        }
+        Self { x, miss: None, slope: SLOPE, failed: false }
     }
 
     fn is_done(&self, near: f64) -> bool {
@@ -165,11 +151,7 @@ impl Root {
         };
         if let Some((before, step)) = self.miss.zip(self.step()) {
             let slope = (miss - before) / step;
-            self.slope = if slope.is_finite() {
-                slope.clamp(STEEPEST, FLATTEST)
-            } else {
-                SLOPE
-            };
+            self.slope = if slope.is_finite() { slope.clamp(STEEPEST, FLATTEST) } else { SLOPE };
         }
         self.miss = Some(miss);
         if miss.abs() > near {
@@ -248,10 +230,7 @@ fn candidates(line: &[Place]) -> Vec<[f64; 2]> {
         true => at - 1,
         false => at,
     };
-    let mut all: Vec<&Place> = lowest
-        .chain(crossed.map(better))
-        .map(|at| &line[at])
-        .collect();
+    let mut all: Vec<&Place> = lowest.chain(crossed.map(better)).map(|at| &line[at]).collect();
     all.sort_by(|a, b| a.chi_square().total_cmp(&b.chi_square()));
     let far = |place: &Place| place.chi_square() > TOO_FAR;
     let mut apart: Vec<&Place> = Vec::new();
@@ -260,17 +239,11 @@ fn candidates(line: &[Place]) -> Vec<[f64; 2]> {
         if !apart.is_empty() && far(place) {
             break;
         }
-        if apart
-            .iter()
-            .all(|known| (known.ln_a - place.ln_a).abs() > FINEST)
-        {
+        if apart.iter().all(|known| (known.ln_a - place.ln_a).abs() > FINEST) {
             apart.push(place);
         }
     }
-    apart
-        .iter()
-        .map(|place| [place.ln_k.exp(), place.ln_a.exp()])
-        .collect()
+    apart.iter().map(|place| [place.ln_k.exp(), place.ln_a.exp()]).collect()
 }
 
 /// Spans of A in s without residuals.

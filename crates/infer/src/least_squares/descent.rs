@@ -213,10 +213,7 @@ impl<'a> Descent<'a> {
     /// Points whose residuals are wanted next; none when the descent has ended.
     fn wanted(&self) -> Vec<Vec<f64>> {
         let around = |pairs: &[Neighbours]| -> Vec<Vec<f64>> {
-            pairs
-                .iter()
-                .flat_map(|pair| pair.points(&self.point))
-                .collect()
+            pairs.iter().flat_map(|pair| pair.points(&self.point)).collect()
         };
         match &self.stage {
             Stage::Start(pairs) => [vec![self.point.clone()], around(pairs)].concat(),
@@ -297,13 +294,10 @@ impl<'a> Descent<'a> {
             (self.point[k] <= parameter.lower && slope > 0.0)
                 || (self.point[k] >= parameter.upper && slope < 0.0)
         };
-        let loose: Vec<usize> = (0..self.free.len())
-            .filter(|place| !is_held(place))
-            .collect();
+        let loose: Vec<usize> = (0..self.free.len()).filter(|place| !is_held(place)).collect();
         let lengths = loose.iter().map(|place| norm(&linear.columns[*place]));
-        let scales: Vec<f64> = lengths
-            .map(|length| if length > 0.0 { length } else { 1.0 })
-            .collect();
+        let scales: Vec<f64> =
+            lengths.map(|length| if length > 0.0 { length } else { 1.0 }).collect();
         let scaled = loose.iter().zip(&scales);
         let scaled = scaled.map(|(p, d)| linear.columns[*p].iter().map(|x| x / d).collect());
         let mut trials = Trials {
@@ -354,11 +348,7 @@ impl<'a> Descent<'a> {
         match best {
             Some((i, valued)) if valued.cost < before => {
                 let gained = before - valued.cost;
-                self.idle = if gained < 1e-3 * fall.min(1.0) {
-                    self.idle + 1
-                } else {
-                    0
-                };
+                self.idle = if gained < 1e-3 * fall.min(1.0) { self.idle + 1 } else { 0 };
                 if fall < QUIET_FALL && gained < 0.1 * fall {
                     self.idle = IDLE;
                 }
@@ -385,12 +375,10 @@ impl<'a> Descent<'a> {
         let rows = self.at.as_ref().map_or(&[][..], |at| &at.rows);
         let freedom = rows.len().saturating_sub(self.free.len()).max(1);
         let reduced_chi_square = dot(rows, rows) / freedom as f64;
-        Stage::Done(
-            match expected_fall < SMALL_FALL * reduced_chi_square.max(1.0) {
-                true => Ending::Floor { expected_fall },
-                false => Ending::Stuck { expected_fall },
-            },
-        )
+        Stage::Done(match expected_fall < SMALL_FALL * reduced_chi_square.max(1.0) {
+            true => Ending::Floor { expected_fall },
+            false => Ending::Stuck { expected_fall },
+        })
     }
 
     pub(crate) fn cost(&self) -> f64 {
@@ -410,9 +398,8 @@ impl Trials {
     /// Components of the scaled gradient along the right singular vectors.
     fn along(&self) -> Vec<f64> {
         let pairs = self.loose.iter().zip(&self.scales);
-        let gradient: Vec<f64> = pairs
-            .map(|(place, scale)| self.linear.gradient[*place] / scale)
-            .collect();
+        let gradient: Vec<f64> =
+            pairs.map(|(place, scale)| self.linear.gradient[*place] / scale).collect();
         self.svd.right.iter().map(|v| dot(v, &gradient)).collect()
     }
 
@@ -421,23 +408,16 @@ impl Trials {
         let least = RESOLVED * self.svd.values.first().copied().unwrap_or(0.0);
         let parts = self.along().into_iter().zip(&self.svd.values);
         let resolved = parts.filter(|(_, value)| **value > least);
-        resolved
-            .map(|(along, value)| 0.5 * (along / value).powi(2))
-            .sum()
+        resolved.map(|(along, value)| 0.5 * (along / value).powi(2)).sum()
     }
 
     /// −(JᵀJ + λ)⁻¹ g, in the parameters' units.
     fn step(&self, damping: f64) -> Vec<f64> {
         let pairs = self.along().into_iter().zip(&self.svd.values);
-        let weights: Vec<f64> = pairs
-            .map(|(along, value)| -along / (value * value + damping))
-            .collect();
+        let weights: Vec<f64> =
+            pairs.map(|(along, value)| -along / (value * value + damping)).collect();
         let scaled = combine(&self.svd.right, &weights);
-        scaled
-            .iter()
-            .zip(&self.scales)
-            .map(|(s, d)| s / d)
-            .collect()
+        scaled.iter().zip(&self.scales).map(|(s, d)| s / d).collect()
     }
 }
 

@@ -129,20 +129,13 @@ pub(crate) struct Linear {
 impl<'a> Merit<'a> {
     pub(crate) fn new(problem: &'a dyn Problem, loss: Loss) -> Self {
         let included = Vec::new();
-        Self {
-            problem,
-            loss,
-            included,
-        }
+        Self { problem, loss, included }
     }
 
     /// The same cost over the rows that a predicate includes.
     pub(crate) fn only(&self, include: impl Fn(usize) -> bool) -> Self {
         let included = (0..self.problem.residual_count()).map(include).collect();
-        Self {
-            included,
-            ..self.clone()
-        }
+        Self { included, ..self.clone() }
     }
 
     /// Residuals and their cost, or why a point has none.
@@ -155,17 +148,11 @@ impl<'a> Merit<'a> {
         let data: f64 = rows.iter().map(|r| self.loss.cost(*r).value).sum();
         let width: f64 = ln_sigmas.iter().sum();
         let parameters = self.problem.parameters().iter().zip(point);
-        let priors: Vec<f64> = parameters
-            .filter_map(|(p, v)| p.prior.residual(*v))
-            .collect();
+        let priors: Vec<f64> = parameters.filter_map(|(p, v)| p.prior.residual(*v)).collect();
         let cost = data + width + 0.5 * dot(&priors, &priors);
         rows.extend(priors);
         match cost.is_finite() {
-            true => Ok(Valued {
-                rows,
-                ln_sigmas,
-                cost,
-            }),
+            true => Ok(Valued { rows, ln_sigmas, cost }),
             false => Err(ModelError(format!("the cost is {cost} at {point:?}"))),
         }
     }
@@ -200,20 +187,13 @@ impl<'a> Merit<'a> {
         let costs: Vec<_> = at.rows[..data].iter().map(|r| self.loss.cost(*r)).collect();
         let weigh = |values: &[f64], factor: fn(&Cost) -> f64| -> Vec<f64> {
             let values = values.iter().enumerate();
-            values
-                .map(|(i, x)| if i < data { x * factor(&costs[i]) } else { *x })
-                .collect()
+            values.map(|(i, x)| if i < data { x * factor(&costs[i]) } else { *x }).collect()
         };
         let rows = weigh(&at.rows, |cost| cost.residual_factor);
-        let columns: Vec<Vec<f64>> = slopes
-            .columns
-            .iter()
-            .map(|column| weigh(column, |cost| cost.slope_factor))
-            .collect();
+        let columns: Vec<Vec<f64>> =
+            slopes.columns.iter().map(|column| weigh(column, |cost| cost.slope_factor)).collect();
         let pairs = columns.iter().zip(&slopes.ln_sigma);
-        let gradient = pairs
-            .map(|(column, width)| dot(column, &rows) + width)
-            .collect();
+        let gradient = pairs.map(|(column, width)| dot(column, &rows) + width).collect();
         Linear { columns, gradient }
     }
 }
@@ -353,9 +333,7 @@ impl Jacobian {
 /// Derivatives of another problem with the same parameters where a fit ended, with its steps.
 pub(crate) fn jacobian_at(problem: &dyn Problem, fit: &Fit) -> Result<Jacobian, ModelError> {
     let merit = Merit::new(problem, Loss::Squares);
-    let found = problem
-        .residuals(std::slice::from_ref(&fit.point))
-        .remove(0);
+    let found = problem.residuals(std::slice::from_ref(&fit.point)).remove(0);
     let at = merit.value(&fit.point, &found)?;
     let (jacobian, _) = jacobian(&merit, (&fit.point, &at), &fit.jacobian.steps, &[])?;
     Ok(jacobian)
@@ -380,28 +358,19 @@ pub(crate) fn jacobian(
     let mut found = known.to_vec();
     found.extend(problem.residuals(&points[known.len()..]));
     if found.len() != points.len() {
-        return Err(ModelError(
-            "the model returned fewer results than points".into(),
-        ));
+        return Err(ModelError("the model returned fewer results than points".into()));
     }
     let (first, second) = found.split_at(2 * near.len());
     let close = slopes(merit, (point, at), &near, first)?;
     let wide = slopes(merit, (point, at), &far, second)?;
     // (4 D(h) − D(2h))/3: the error of order h² cancels.
     let extrapolated = |near: &[f64], far: &[f64]| -> Vec<f64> {
-        near.iter()
-            .zip(far)
-            .map(|(near, far)| near + (near - far) / 3.0)
-            .collect()
+        near.iter().zip(far).map(|(near, far)| near + (near - far) / 3.0).collect()
     };
     let disagreement = |near: &[f64], far: &[f64]| {
         let difference: Vec<f64> = near.iter().zip(far).map(|(a, b)| a - b).collect();
         let length = norm(near);
-        if length == 0.0 {
-            0.0
-        } else {
-            norm(&difference) / length
-        }
+        if length == 0.0 { 0.0 } else { norm(&difference) / length }
     };
     let pairs = || close.columns.iter().zip(&wide.columns);
     let columns: Vec<Vec<f64>> = pairs().map(|(near, far)| extrapolated(near, far)).collect();

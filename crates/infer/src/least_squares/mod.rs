@@ -33,13 +33,7 @@ pub struct Fitting {
 
 impl Default for Fitting {
     fn default() -> Self {
-        Self {
-            loss: Loss::Squares,
-            starts: 1,
-            seed: 0,
-            tolerance: 1e-9,
-            iterations: 200,
-        }
+        Self { loss: Loss::Squares, starts: 1, seed: 0, tolerance: 1e-9, iterations: 200 }
     }
 }
 
@@ -51,9 +45,9 @@ impl Fitting {
             () if self.starts == 0 => {
                 InferError::input("number of starts is 0: expected at least 1")
             }
-            () if !positive(tolerance) => InferError::input(format!(
-                "tolerance is {tolerance}: expected a positive number"
-            )),
+            () if !positive(tolerance) => {
+                InferError::input(format!("tolerance is {tolerance}: expected a positive number"))
+            }
             () if !positive(scale) => InferError::input(format!(
                 "scale of the loss is {scale}: expected a positive number of σ"
             )),
@@ -62,10 +56,7 @@ impl Fitting {
     }
 
     pub(crate) fn limits(&self) -> Limits {
-        Limits {
-            tolerance: self.tolerance,
-            iterations: self.iterations,
-        }
+        Limits { tolerance: self.tolerance, iterations: self.iterations }
     }
 }
 
@@ -231,10 +222,7 @@ fn nothing_free() -> InferError {
 
 fn changes_nothing(problem: &dyn Problem, k: usize, point: &[f64]) -> InferError {
     let name = problem.parameters()[k].name.clone();
-    InferError::ChangesNothing {
-        name,
-        value: point[k],
-    }
+    InferError::ChangesNothing { name, value: point[k] }
 }
 
 /// How far from a start, in units of the scale, a parameter without effect is tried.
@@ -325,11 +313,7 @@ fn start_fails(parameters: &[Parameter], point: &[f64], error: &ModelError) -> I
     let values = parameters.iter().zip(point).take(NAMED);
     let values = values.map(|(p, v)| format!("{} = {v:.4e} {}", p.name, p.unit).trim_end().into());
     let values: Vec<String> = values.collect();
-    let more = if parameters.len() > NAMED {
-        ", …"
-    } else {
-        ""
-    };
+    let more = if parameters.len() > NAMED { ", …" } else { "" };
     InferError::Model(format!(
         "no residuals at the start: with {}{more}: {error}. Start elsewhere (--start, in SI or with a unit)",
         values.join(", ")
@@ -364,11 +348,7 @@ fn binding(parameters: &[Parameter], point: &[f64], gradient: &[f64]) -> Vec<Bin
         let (parameter, push) = (&parameters[k], -gradient[k]);
         let outward = (point[k] <= parameter.lower && push < 0.0)
             || (point[k] >= parameter.upper && push > 0.0);
-        outward.then_some(Binding {
-            parameter: k,
-            bound: point[k],
-            push: push.abs(),
-        })
+        outward.then_some(Binding { parameter: k, bound: point[k], push: push.abs() })
     };
     (0..point.len()).filter_map(held).collect()
 }
@@ -393,10 +373,7 @@ fn ending(
     let sizes = sized(parameters, &best.point);
     let is_loose = |k: &usize| binding.iter().all(|b| b.parameter != *k);
     let loose = (0..parameters.len()).filter(is_loose).map(|k| Loose {
-        column: linear.columns[k]
-            .iter()
-            .map(|x| x * sizes[k].scale)
-            .collect(),
+        column: linear.columns[k].iter().map(|x| x * sizes[k].scale).collect(),
         slope: linear.gradient[k] * sizes[k].scale,
         doubt: ROUNDING + EXTRAPOLATED * jacobian.disagreement[k],
     });
@@ -419,10 +396,7 @@ struct Loose {
 /// them.
 fn determined_fall(loose: &[Loose]) -> Option<f64> {
     let columns: Vec<Vec<f64>> = loose.iter().map(|one| one.column.clone()).collect();
-    let errors: Vec<f64> = loose
-        .iter()
-        .map(|one| one.doubt * norm(&one.column))
-        .collect();
+    let errors: Vec<f64> = loose.iter().map(|one| one.doubt * norm(&one.column)).collect();
     let (floor, found) = (norm(&errors), svd(&columns));
     let slopes: Vec<f64> = loose.iter().map(|one| one.slope).collect();
     let pairs = found.values.iter().zip(&found.right);

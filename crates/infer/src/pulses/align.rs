@@ -54,19 +54,12 @@ fn at(record: &Pulses, traced: &Traced, shift_s: f64) -> (Vec<f64>, Correction) 
     let model = sampled(record, traced, &traced.volts, shift_s);
     let later = sampled(record, traced, &traced.volts, shift_s + half_s);
     let earlier = sampled(record, traced, &traced.volts, shift_s - half_s);
-    let by_shift = later
-        .iter()
-        .zip(&earlier)
-        .map(|(a, b)| (a - b) / (2.0 * half_s));
+    let by_shift = later.iter().zip(&earlier).map(|(a, b)| (a - b) / (2.0 * half_s));
     let mut by_shift: Vec<f64> = by_shift.collect();
     let measured = weighed(record, |channel, at| record.means_v[channel][at]);
     let mut left: Vec<f64> = measured.iter().zip(&model).map(|(a, b)| a - b).collect();
-    let ones = |own: usize| {
-        weighed(
-            record,
-            move |channel, _| if channel == own { 1.0 } else { 0.0 },
-        )
-    };
+    let ones =
+        |own: usize| weighed(record, move |channel, _| if channel == own { 1.0 } else { 0.0 });
     let mut columns: Vec<Vec<f64>> = (0..channels).map(ones).collect();
     let error = record.ln_speed_error();
     if error > 0.0 {
@@ -79,13 +72,7 @@ fn at(record: &Pulses, traced: &Traced, shift_s: f64) -> (Vec<f64>, Correction) 
     }
     columns.push(by_shift);
     let (along, length) = take_out(&mut columns, &mut left);
-    (
-        left,
-        Correction {
-            seconds: along / length,
-            sigmas: along,
-        },
-    )
+    (left, Correction { seconds: along / length, sigmas: along })
 }
 
 /// Takes the part along all columns out of a vector; returns its coordinate along
@@ -105,9 +92,7 @@ fn take_out(columns: &mut [Vec<f64>], from: &mut [f64]) -> (f64, f64) {
         }
         own.iter_mut().for_each(|x| *x /= length);
         let along = dot(own, from);
-        from.iter_mut()
-            .zip(own.iter())
-            .for_each(|(x, q)| *x -= along * q);
+        from.iter_mut().zip(own.iter()).for_each(|(x, q)| *x -= along * q);
         last = (along, length);
     }
     last
@@ -129,9 +114,7 @@ fn sampled(record: &Pulses, traced: &Traced, signals: &[Vec<f64>], shift_s: f64)
     let one = |channel: usize, at: usize| {
         let signal = signals.get(channel).map_or(&[][..], Vec::as_slice);
         let samples = at * record.width..(at + 1) * record.width;
-        let sum: f64 = samples
-            .map(|n| between(signal, first + n as f64 * step))
-            .sum();
+        let sum: f64 = samples.map(|n| between(signal, first + n as f64 * step)).sum();
         sum / record.width as f64
     };
     weighed(record, one)
@@ -146,11 +129,7 @@ fn between(signal: &[f64], place: f64) -> f64 {
         let at = below + offset;
         match at < 0.0 {
             true => 0.0,
-            false => signal
-                .get(at as usize)
-                .or(signal.last())
-                .copied()
-                .unwrap_or(0.0),
+            false => signal.get(at as usize).or(signal.last()).copied().unwrap_or(0.0),
         }
     };
     let [a, b, c, d] = [-1.0, 0.0, 1.0, 2.0].map(sample);

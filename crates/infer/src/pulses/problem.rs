@@ -225,8 +225,7 @@ impl PulseProblem {
                 Err(error) if stopped() => return Err(at_start(&error)),
                 Err(error) => {
                     passing.push(None);
-                    self.left_out
-                        .push(format!("the model where it starts: {error}"));
+                    self.left_out.push(format!("the model where it starts: {error}"));
                     missing = missing.or(Some(error));
                 }
             }
@@ -275,10 +274,7 @@ impl PulseProblem {
         let [shooting, faster] = self.shootings(point, at)?;
         let (shot, volts) = self.traced(&shooting, at)?;
         let (_, moved) = self.traced(&faster, at)?;
-        let passage = shot
-            .passage
-            .as_ref()
-            .map_err(|error| named(record, error))?;
+        let passage = shot.passage.as_ref().map_err(|error| named(record, error))?;
         let slopes = |(one, other): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
             let pairs = one.iter().zip(other);
             pairs.map(|(a, b)| (b - a) / ASIDE.ln_1p()).collect()
@@ -364,10 +360,7 @@ fn first_shot(record: &Pulses, shooting: &Shooting) -> Result<FirstShot, ModelEr
     Ok(FirstShot {
         sensor_gain_v_n: shooting.sensor_gain_v_n,
         passing_n: passing.value,
-        grid: (
-            length_s,
-            least_s.min(record.interval_s).min(LONGEST_INTERVAL_S),
-        ),
+        grid: (length_s, least_s.min(record.interval_s).min(LONGEST_INTERVAL_S)),
     })
 }
 
@@ -418,10 +411,6 @@ impl Problem for PulseProblem {
             (_, 0) => " of the bead",
             _ => " of the wall",
         };
-        format!(
-            "{}, {:.1} µs after the passing maximum{which}",
-            record.source,
-            1e6 * time_s
-        )
+        format!("{}, {:.1} µs after the passing maximum{which}", record.source, 1e6 * time_s)
     }
 }

@@ -93,9 +93,7 @@ impl Pulses {
                 let sum: f64 = chunk.iter().map(|sample| up.height(*sample)).sum();
                 sum / width as f64
             };
-            pulses
-                .means_v
-                .push(window.chunks_exact(width).map(mean).collect());
+            pulses.means_v.push(window.chunks_exact(width).map(mean).collect());
             pulses.sigma_v.push(sigma_v);
         }
         Ok(pulses)
@@ -132,12 +130,7 @@ fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, I
     };
     let named = |error: MeasureError| InferError::Input(format!("{source}: {error}"));
     let found = measure(channels, interval_s, &SignalOptions::default()).map_err(named)?;
-    let grave = found
-        .found
-        .flags
-        .iter()
-        .copied()
-        .find(QualityFlag::is_grave);
+    let grave = found.found.flags.iter().copied().find(QualityFlag::is_grave);
     if let Some(flag) = grave {
         return InferError::input(format!("{source}: {flag}"));
     }

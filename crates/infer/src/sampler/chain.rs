@@ -22,13 +22,7 @@ pub struct Sampling {
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self {
-            walkers: 32,
-            ensembles: 2,
-            differential_share: 0.5,
-            keep_every: 1,
-            seed: 0,
-        }
+        Self { walkers: 32, ensembles: 2, differential_share: 0.5, keep_every: 1, seed: 0 }
     }
 }
 
@@ -49,9 +43,9 @@ impl Sampling {
             () if self.keep_every == 0 => {
                 InferError::input("number of steps between stored ones is 0: expected at least 1")
             }
-            () if !(0.0..=1.0).contains(&share) => InferError::input(format!(
-                "share of difference moves is {share}: expected 0 to 1"
-            )),
+            () if !(0.0..=1.0).contains(&share) => {
+                InferError::input(format!("share of difference moves is {share}: expected 0 to 1"))
+            }
             () => Ok(()),
         }
     }
@@ -157,9 +151,7 @@ impl Chain {
         }
         // Places beyond a bound need no model.
         let inside = proposals.iter().filter(|(_, _, is_admitted)| *is_admitted);
-        let points: Vec<Vec<f64>> = inside
-            .map(|(_, proposal, _)| proposal.point.clone())
-            .collect();
+        let points: Vec<Vec<f64>> = inside.map(|(_, proposal, _)| proposal.point.clone()).collect();
         let mut densities = ln_densities(problem, self.loss, &points).into_iter();
         for (walker, proposal, is_admitted) in proposals {
             let density = if is_admitted { densities.next() } else { None };
@@ -273,11 +265,7 @@ impl Chain {
 }
 
 fn names(problem: &dyn Problem) -> Vec<String> {
-    problem
-        .parameters()
-        .iter()
-        .map(|p| p.name.clone())
-        .collect()
+    problem.parameters().iter().map(|p| p.name.clone()).collect()
 }
 
 /// ln of likelihood times priors up to a constant, for points within bounds; −∞ where the model
@@ -336,20 +324,12 @@ fn propose(
         // ∝ 1/√z between ½ and 2; accepted with z^(d−1) times the ratio of densities.
         let other = &others[random.below(others.len())];
         let z = 0.5 * (1.0 + random.uniform()).powi(2);
-        let point = walker
-            .iter()
-            .zip(other)
-            .map(|(x, o)| o + z * (x - o))
-            .collect();
+        let point = walker.iter().zip(other).map(|(x, o)| o + z * (x - o)).collect();
         (point, (walker.len() as f64 - 1.0) * z.ln())
     };
     // 1 − u is never 0.
     let ln_uniform = (1.0 - random.uniform()).ln();
-    Proposal {
-        point,
-        ln_factor,
-        ln_uniform,
-    }
+    Proposal { point, ln_factor, ln_uniform }
 }
 
 /// Times that a walker without a density is drawn again, nearer to the optimum.
@@ -369,9 +349,7 @@ fn walkers(
     let draw = |size: f64, random: &mut RandomStream| -> Vec<f64> {
         let displacement = displacement(parameters, fit, covariance, random);
         let places = fit.point.iter().zip(displacement).zip(parameters);
-        places
-            .map(|((middle, d), parameter)| inside(middle + size * d, parameter))
-            .collect()
+        places.map(|((middle, d), parameter)| inside(middle + size * d, parameter)).collect()
     };
     let mut walkers: Vec<Vec<f64>> = (0..count).map(|_| draw(1.0, random)).collect();
     let mut densities = ln_densities(problem, fit.loss, &walkers);
@@ -401,10 +379,7 @@ fn displacement(
 ) -> Vec<f64> {
     let mut displacement = covariance.displacement(|| random.normal());
     for direction in &covariance.unresolved {
-        let parts = direction
-            .iter()
-            .zip(parameters)
-            .map(|(d, p)| (d / p.scale).abs());
+        let parts = direction.iter().zip(parameters).map(|(d, p)| (d / p.scale).abs());
         let size = UNRESOLVED * random.normal() / parts.fold(f64::MIN_POSITIVE, f64::max);
         for (sum, part) in displacement.iter_mut().zip(direction) {
             *sum += size * part;
@@ -412,10 +387,7 @@ fn displacement(
     }
     for binding in &fit.binding {
         // The density falls by e over 1/push from the bound; `inside` mirrors.
-        let width = binding
-            .push
-            .recip()
-            .min(parameters[binding.parameter].scale);
+        let width = binding.push.recip().min(parameters[binding.parameter].scale);
         displacement[binding.parameter] += width * random.normal();
     }
     displacement

@@ -34,33 +34,21 @@ pub fn autocorrelation_time(chains: &[Vec<f64>]) -> Autocorrelation {
         products.sum::<f64>() / ((length - lag) as f64 * chains.len() as f64)
     };
     if length < 2 {
-        return Autocorrelation {
-            time: 1.0,
-            resolved: false,
-        };
+        return Autocorrelation { time: 1.0, resolved: false };
     }
     let variance = covariance(0);
     if variance <= 0.0 {
-        return Autocorrelation {
-            time: 1.0,
-            resolved: true,
-        };
+        return Autocorrelation { time: 1.0, resolved: true };
     }
     let mut time = 1.0;
     // Of long chains every lag takes a millisecond, and there may be thousands.
     for lag in (1..length / 2).take_while(|_| !stopped()) {
         time += 2.0 * covariance(lag) / variance;
         if lag as f64 >= WINDOW * time {
-            return Autocorrelation {
-                time: f64::max(time, 0.1),
-                resolved: true,
-            };
+            return Autocorrelation { time: f64::max(time, 0.1), resolved: true };
         }
     }
-    Autocorrelation {
-        time,
-        resolved: false,
-    }
+    Autocorrelation { time, resolved: false }
 }
 
 /// Requirements that a chain must meet before quantiles are taken from it.
@@ -79,11 +67,7 @@ impl Default for Requirements {
     /// which walkers of that length just reach; 1000 effective samples, which place a 95 % limit to
     /// a tenth of σ.
     fn default() -> Self {
-        Self {
-            times: 50.0,
-            r_hat: 1.02,
-            effective: 1000.0,
-        }
+        Self { times: 50.0, r_hat: 1.02, effective: 1000.0 }
     }
 }
 
@@ -124,11 +108,7 @@ impl Unconverged {
     /// Steps after which all requirements should be met.
     #[must_use]
     pub fn more_steps(&self) -> u64 {
-        self.shortfalls
-            .iter()
-            .map(|s| s.more_steps)
-            .max()
-            .unwrap_or(0)
+        self.shortfalls.iter().map(|s| s.more_steps).max().unwrap_or(0)
     }
 }
 
@@ -157,10 +137,7 @@ impl Chain {
             let found = autocorrelation_time(&chains);
             let length = chains.first().map_or(0, Vec::len);
             Diagnosis {
-                time: Autocorrelation {
-                    time: found.time * self.keep_every() as f64,
-                    ..found
-                },
+                time: Autocorrelation { time: found.time * self.keep_every() as f64, ..found },
                 r_hat: split_r_hat(&chains),
                 effective: (length * chains.len()) as f64 / found.time.max(1.0),
                 steps: length as u64 * self.keep_every(),
@@ -191,9 +168,8 @@ impl Chain {
             }],
         })?;
         let named = self.names().iter().zip(&all);
-        let shortfalls: Vec<Shortfall> = named
-            .flat_map(|(name, found)| self.shortfalls(name, found, asked))
-            .collect();
+        let shortfalls: Vec<Shortfall> =
+            named.flat_map(|(name, found)| self.shortfalls(name, found, asked)).collect();
         match shortfalls.is_empty() {
             true => Ok(all),
             false => Err(Unconverged { steps, shortfalls }),
@@ -212,11 +188,7 @@ impl Chain {
                 false => 1.25 * factor.clamp(1.1, 1e3) * steps,
             };
             let more_steps = (needed as u64).saturating_sub(self.steps()).max(1);
-            missing.push(Shortfall {
-                name: name.to_owned(),
-                reason,
-                more_steps,
-            });
+            missing.push(Shortfall { name: name.to_owned(), reason, more_steps });
         };
         if !found.time.resolved {
             let reason = format!(
@@ -282,9 +254,7 @@ impl Chain {
         let by_step = |parameter: usize| -> Vec<f64> {
             let chains = self.after_burn_in(parameter);
             let length = chains.first().map_or(0, Vec::len);
-            (0..length)
-                .flat_map(|i| chains.iter().map(move |chain| chain[i]))
-                .collect()
+            (0..length).flat_map(|i| chains.iter().map(move |chain| chain[i])).collect()
         };
         let samples: Vec<Vec<f64>> = (0..self.names().len()).map(by_step).collect();
         let mean: Vec<f64> = samples.iter().map(|s| mean_of(s)).collect();
@@ -299,17 +269,9 @@ impl Chain {
         let mut ascending = samples.clone();
         // A million samples take their time: not after a request to stop.
         if !stopped() {
-            ascending
-                .iter_mut()
-                .for_each(|samples| samples.sort_unstable_by(f64::total_cmp));
+            ascending.iter_mut().for_each(|samples| samples.sort_unstable_by(f64::total_cmp));
         }
-        Ok(Posterior {
-            covariance,
-            ascending,
-            diagnoses,
-            mean,
-            samples,
-        })
+        Ok(Posterior { covariance, ascending, diagnoses, mean, samples })
     }
 }
 

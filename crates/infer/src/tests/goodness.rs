@@ -7,12 +7,7 @@ fn runs_of_all_orders_are_counted_rightly() {
     let shares = [2, 3, 4, 5].map(|runs| run_probability(runs, 3, 2));
     let by_hand = [0.2, 0.3, 0.4, 0.1];
     // Rounding.
-    assert!(
-        shares
-            .iter()
-            .zip(by_hand)
-            .all(|(a, b)| (a - b).abs() < 1e-15)
-    );
+    assert!(shares.iter().zip(by_hand).all(|(a, b)| (a - b).abs() < 1e-15));
     let found = runs(&[1.0, 2.0, 0.0, 1.0, -1.0, -3.0]).unwrap();
     assert_eq!(found.count, 2);
     assert!((found.probability_fewer - 0.2).abs() < 1e-15);

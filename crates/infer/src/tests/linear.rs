@@ -19,16 +19,11 @@ use crate::linear::combine;
 
 #[test]
 fn products_of_the_factors_are_the_matrix() {
-    let columns = vec![
-        vec![1.0, 2.0, 3.0, -1.0],
-        vec![0.5, -1.0, 2.0, 4.0],
-        vec![1e-9, 3.0, 1.0, 0.0],
-    ];
+    let columns =
+        vec![vec![1.0, 2.0, 3.0, -1.0], vec![0.5, -1.0, 2.0, 4.0], vec![1e-9, 3.0, 1.0, 0.0]];
     let found = svd(&columns);
     for (k, column) in columns.iter().enumerate() {
-        let weights: Vec<f64> = (0..3)
-            .map(|i| found.values[i] * found.right[i][k])
-            .collect();
+        let weights: Vec<f64> = (0..3).map(|i| found.values[i] * found.right[i][k]).collect();
         let back = combine(&found.left, &weights);
         // Rounding of a few operations on numbers up to 5.
         assert!(back.iter().zip(column).all(|(a, b)| (a - b).abs() < 1e-14));

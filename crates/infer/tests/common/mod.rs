@@ -26,9 +26,7 @@ pub(crate) const TIME_S: f64 = 0.5e-6;
 
 /// A model of an experiment with these numbers free.
 pub(crate) fn model(experiment: &Experiment, names: &[&str]) -> Model {
-    let numbers = names
-        .iter()
-        .map(|name| FreeNumber::find(experiment, name, None).unwrap());
+    let numbers = names.iter().map(|name| FreeNumber::find(experiment, name, None).unwrap());
     Model::new(experiment, FreeNumbers::new(numbers.collect()).unwrap()).unwrap()
 }
 
@@ -90,10 +88,7 @@ impl Truth {
         let exact = model.clone().with_accuracy(TRUTH);
         let at = |factor: f64| {
             let speeds: Vec<f64> = speeds_m_s.iter().map(|v| v * factor).collect();
-            exact
-                .curves(&[point.to_vec()], &Speeds::of_rows(&speeds))
-                .remove(0)
-                .unwrap()
+            exact.curves(&[point.to_vec()], &Speeds::of_rows(&speeds)).remove(0).unwrap()
         };
         let [below, curve, above] = [1.0 - ASIDE, 1.0, 1.0 + ASIDE].map(at);
         let width = ((1.0 + ASIDE) / (1.0 - ASIDE)).ln();
@@ -112,9 +107,7 @@ impl Truth {
     pub(crate) fn shot_by_rk4(&mut self, experiment: &Experiment, step_s: f64) {
         for (row, speed) in self.curve.iter_mut().zip(&self.speeds_m_s) {
             let (mut plan, _) = Plan::from_experiment(experiment, Some(*speed)).unwrap();
-            plan.solver = Solver::Rk4 {
-                step_s: Some(step_s),
-            };
+            plan.solver = Solver::Rk4 { step_s: Some(step_s) };
             let flight = shoot(&plan.for_flights()).unwrap().flight.unwrap();
             (row[0], row[1]) = (Some(flight.incident_s), flight.reflected_s);
         }
@@ -154,10 +147,8 @@ impl Truth {
                 let exact = self.curve[at][of as usize].unwrap();
                 let moved = self.slopes[at][of as usize] * speed.value / row.speed_m_s.value;
                 let time = mean_of(TIME_S);
-                row.values[of as usize] = Some(Estimate {
-                    value: exact * moved.exp() + time.value,
-                    sigma: time.sigma,
-                });
+                row.values[of as usize] =
+                    Some(Estimate { value: exact * moved.exp() + time.value, sigma: time.sigma });
             }
         }
         data
@@ -209,10 +200,7 @@ impl Truth {
             });
             DataRow {
                 line: at as u64 + 2,
-                speed_m_s: Estimate {
-                    value: speed,
-                    sigma: speed_error,
-                },
+                speed_m_s: Estimate { value: speed, sigma: speed_error },
                 values: [times[0], times[1], None, peaks],
                 correlation: Some(noise.correlation),
                 freedom: Freedom::KNOWN,

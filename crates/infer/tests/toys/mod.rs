@@ -45,26 +45,15 @@ impl<F: Fn(&[f64], f64) -> f64 + Sync> Curve<F> {
         model: F,
     ) -> Self {
         let noise = normals(seed, x.len());
-        let y = x
-            .iter()
-            .zip(noise)
-            .map(|(x, e)| model(truth, *x) + sigma * e);
-        Self {
-            parameters,
-            x: x.to_vec(),
-            y: y.collect(),
-            sigma: vec![sigma; x.len()],
-            model,
-        }
+        let y = x.iter().zip(noise).map(|(x, e)| model(truth, *x) + sigma * e);
+        Self { parameters, x: x.to_vec(), y: y.collect(), sigma: vec![sigma; x.len()], model }
     }
 }
 
 /// Standard normal numbers from a seed.
 pub fn normals(seed: u64, count: usize) -> Vec<f64> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    (0..count)
-        .map(|_| StandardNormal.sample(&mut generator))
-        .collect()
+    (0..count).map(|_| StandardNormal.sample(&mut generator)).collect()
 }
 
 /// Equally spaced numbers.
@@ -93,8 +82,5 @@ pub fn regression(x: &[f64], y: &[f64], sigma: f64) -> ([f64; 2], [[f64; 2]; 2])
     let slope = (n * sxy - sx * sy) / determinant;
     let factor = sigma * sigma / determinant;
     let off = -sx * factor;
-    (
-        [(sy - slope * sx) / n, slope],
-        [[sxx * factor, off], [off, n * factor]],
-    )
+    ([(sy - slope * sx) / n, slope], [[sxx * factor, off], [off, n * factor]])
 }

@@ -12,21 +12,10 @@ use std::path::Path;
 use std::rc::Rc;
 
 /// Names of numbers that are an interval in s, and a rate in Hz.
-pub(crate) const INTERVALS: &[&str] = &[
-    "dt",
-    "interval",
-    "interval_s",
-    "sampling_interval",
-    "sampling_interval_s",
-];
-pub(crate) const RATES: &[&str] = &[
-    "fs",
-    "rate",
-    "rate_hz",
-    "sample_rate",
-    "sampling_rate",
-    "samplerate",
-];
+pub(crate) const INTERVALS: &[&str] =
+    &["dt", "interval", "interval_s", "sampling_interval", "sampling_interval_s"];
+pub(crate) const RATES: &[&str] =
+    &["fs", "rate", "rate_hz", "sample_rate", "sampling_rate", "samplerate"];
 /// Names of arrays of times without a unit, and in s.
 const TIMES: &[&str] = &["t", "time", "times"];
 const TIMES_S: &[&str] = &["time_s", "t_s"];
@@ -67,11 +56,7 @@ impl Axes {
             (&[_, _, _], _) => (Some(0), Some(1), 2),
             _ => return None,
         };
-        Some(Self {
-            shots,
-            channels,
-            time,
-        })
+        Some(Self { shots, channels, time })
     }
 }
 
@@ -280,10 +265,7 @@ fn of_samples(
 ) -> Result<(Raw, usize), MeasureError> {
     let file = arrays.file();
     // Columns of an array that is itself chosen are not chosen from.
-    let free = ReadOptions {
-        channels: Vec::new(),
-        ..options.clone()
-    };
+    let free = ReadOptions { channels: Vec::new(), ..options.clone() };
     if let [one] = samples.as_slice() {
         let options = match options.channels.contains(one) {
             true => &free,

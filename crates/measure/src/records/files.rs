@@ -69,10 +69,7 @@ impl Files {
         fs::create_dir_all(folder)?;
         remove_left_behind(folder, |_| true);
         locked(&folder.join("probe"))?.close()?;
-        Ok(Self {
-            folder: folder.to_owned(),
-            parts: Vec::new(),
-        })
+        Ok(Self { folder: folder.to_owned(), parts: Vec::new() })
     }
 
     /// The folder.
@@ -208,10 +205,7 @@ struct Copies {
     folders: Vec<TempDir>,
 }
 
-static COPIES: Mutex<Copies> = Mutex::new(Copies {
-    unread: BTreeMap::new(),
-    folders: Vec::new(),
-});
+static COPIES: Mutex<Copies> = Mutex::new(Copies { unread: BTreeMap::new(), folders: Vec::new() });
 
 fn copies() -> MutexGuard<'static, Copies> {
     COPIES.lock().unwrap_or_else(PoisonError::into_inner)

@@ -22,14 +22,8 @@ const DEFLATE: u32 = 1;
 const CHUNK: usize = 1 << 16;
 
 /// Endings of names, with units as CF conventions write them.
-const UNITS: &[(&str, &str)] = &[
-    ("_m_s", "m s-1"),
-    ("_s", "s"),
-    ("_m", "m"),
-    ("_n", "N"),
-    ("_v", "V"),
-    ("_j", "J"),
-];
+const UNITS: &[(&str, &str)] =
+    &[("_m_s", "m s-1"), ("_s", "s"), ("_m", "m"), ("_n", "N"), ("_v", "V"), ("_j", "J")];
 
 /// Opens a series of a virtual campaign, or the datasets of another program.
 pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
@@ -108,10 +102,7 @@ pub(crate) fn damaged(error: &Hdf5Error) -> String {
 /// Writes what a dataset is, with the unit that its name ends in.
 pub(crate) fn describe(of: &H5Dataset, what: &str, unit: &str) -> Result<(), Hdf5Error> {
     for (name, text) in [("long_name", what), ("units", unit)] {
-        of.new_attr::<VarLenUnicode>()
-            .shape(())
-            .create(name)?
-            .write_string(text)?;
+        of.new_attr::<VarLenUnicode>().shape(()).create(name)?.write_string(text)?;
     }
     Ok(())
 }
@@ -233,10 +224,7 @@ impl Slices {
             DatatypeMessage::FixedPoint { size, signed, .. } => {
                 let whole = dataset.read_numeric_slice_as::<i64>(starts, counts)?;
                 let range_v = (size == 2 && signed).then(|| converter_range_v(1.0, 0.0));
-                (
-                    whole.into_iter().map(|number| number as f64).collect(),
-                    range_v,
-                )
+                (whole.into_iter().map(|number| number as f64).collect(), range_v)
             }
             _ => (dataset.read_numeric_slice_as::<f64>(starts, counts)?, None),
         })
@@ -303,10 +291,7 @@ impl ColumnFile {
                     read.push((name.to_owned(), column::<f64>(&open, name, rows)?));
                 }
             }
-            Ok(Self {
-                about,
-                columns: read,
-            })
+            Ok(Self { about, columns: read })
         };
         found().map_err(|e: Hdf5Error| MeasureError::malformed(path, "a table", damaged(&e)))
     }

@@ -34,11 +34,7 @@ pub(crate) struct SampleInterval {
 
 impl SampleInterval {
     pub(super) fn exact(s: f64) -> Self {
-        Self {
-            s,
-            error_s: 0.0,
-            note: None,
-        }
+        Self { s, error_s: 0.0, note: None }
     }
 }
 
@@ -102,11 +98,7 @@ pub(crate) fn from_times(
     let off_s = (times.most_s - s).max(s - times.least_s);
     let error_s = off_s / 3.0_f64.sqrt();
     let note = (error_s > NOTED * s).then(|| coarse(times, s, off_s, round_s.is_some()));
-    Ok(SampleInterval {
-        s: interval_s(file, Some(s), options)?,
-        error_s,
-        note,
-    })
+    Ok(SampleInterval { s: interval_s(file, Some(s), options)?, error_s, note })
 }
 
 impl FromTimes {

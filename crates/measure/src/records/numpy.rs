@@ -24,16 +24,8 @@ const MOST_HEADER: usize = 10_000;
 const MOST_NESTED: usize = 16;
 
 pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
-    let entry = NpyEntry {
-        name: String::new(),
-        start: 0,
-        size: u64::MAX,
-        deflated: false,
-    };
-    let archive = Archive {
-        file: file.to_owned(),
-        entries: vec![entry],
-    };
+    let entry = NpyEntry { name: String::new(), start: 0, size: u64::MAX, deflated: false };
+    let archive = Archive { file: file.to_owned(), entries: vec![entry] };
     arrays::open(Rc::new(archive), options)
 }
 
@@ -107,10 +99,7 @@ impl Arrays for Archive {
     }
 
     fn names(&self) -> Vec<String> {
-        self.entries
-            .iter()
-            .map(|entry| entry.name.clone())
-            .collect()
+        self.entries.iter().map(|entry| entry.name.clone()).collect()
     }
 
     fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError> {
@@ -176,9 +165,7 @@ impl<'a> Array<'a> {
         })?;
         let number = number(&header.dtype()).map_err(malformed)?;
         let sizes = header.shape();
-        let length = sizes
-            .iter()
-            .fold(number.width() as u64, |all, n| all.saturating_mul(*n));
+        let length = sizes.iter().fold(number.width() as u64, |all, n| all.saturating_mul(*n));
         let sizes = sizes.iter().map(|size| usize::try_from(*size).ok());
         let shape: Option<Vec<usize>> = sizes.collect();
         Ok(Self {
@@ -331,12 +318,8 @@ fn nested(header: &[u8]) -> usize {
 
 /// How items are stored, or why they are not read.
 fn number(dtype: &DType) -> Result<StoredNumber, String> {
-    let no_number = || {
-        format!(
-            "its items are {}, not real numbers; save a plain array",
-            dtype.descr()
-        )
-    };
+    let no_number =
+        || format!("its items are {}, not real numbers; save a plain array", dtype.descr());
     let DType::Plain(plain) = dtype else {
         return Err(no_number());
     };
@@ -360,8 +343,5 @@ fn number(dtype: &DType) -> Result<StoredNumber, String> {
         }
         _ => return Err(no_number()),
     };
-    Ok(StoredNumber::plain(
-        kind,
-        plain.endianness() == Endianness::Big,
-    ))
+    Ok(StoredNumber::plain(kind, plain.endianness() == Endianness::Big))
 }

@@ -110,10 +110,7 @@ pub(crate) fn chosen(
 
 pub(crate) fn no_channel(file: &Path, wanted: &str, names: &[String]) -> MeasureError {
     let there = list(names);
-    MeasureError::Channels(
-        file_name(file),
-        format!("has no channel {wanted:?}; it has {there}"),
-    )
+    MeasureError::Channels(file_name(file), format!("has no channel {wanted:?}; it has {there}"))
 }
 
 pub(crate) fn ambiguous(file: &Path, names: &[String]) -> MeasureError {

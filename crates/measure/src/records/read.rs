@@ -80,11 +80,7 @@ impl Iterator for Records {
                 "more than {MOST_RECORDS} records; --rows says what the rows of an array are, and \
                  parts of a file can be measured one by one"
             );
-            return Some(Err(MeasureError::malformed(
-                &self.file,
-                "a recording",
-                detail,
-            )));
+            return Some(Err(MeasureError::malformed(&self.file, "a recording", detail)));
         }
         Some(record.and_then(|record| self.checked(record)))
     }
@@ -239,9 +235,7 @@ fn format_of(file: &Path) -> Result<Open, MeasureError> {
     });
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     let extension = extension.to_ascii_lowercase();
-    let promised = FORMATS
-        .iter()
-        .find(|format| format.2.contains(&&*extension));
+    let promised = FORMATS.iter().find(|format| format.2.contains(&&*extension));
     let detail = match (found, promised) {
         (Some(found), None) => return Ok(found.3),
         (Some(found), Some(promised)) if found.0 == promised.0 => return Ok(found.3),

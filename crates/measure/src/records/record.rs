@@ -53,13 +53,7 @@ impl Record {
         interval_s: f64,
         channels: Vec<Channel>,
     ) -> Self {
-        Self {
-            source,
-            file: file.to_owned(),
-            interval_s,
-            channels,
-            ..Self::default()
-        }
+        Self { source, file: file.to_owned(), interval_s, channels, ..Self::default() }
     }
 
     /// The part from sample `start`, at most `count` long.
@@ -102,17 +96,14 @@ impl Record {
     pub(crate) fn append(&mut self, later: &Self, start: usize, count: usize) {
         let (before, part) = (self.len(), later.part(start, count));
         let gaps = part.gaps.iter();
-        self.gaps
-            .extend(gaps.map(|gap| gap.start + before..gap.end + before));
+        self.gaps.extend(gaps.map(|gap| gap.start + before..gap.end + before));
         if self.channels.is_empty() {
             self.channels = part.channels;
             return;
         }
         for (channel, later) in self.channels.iter_mut().zip(part.channels) {
             channel.volts.extend(later.volts);
-            channel.range_v = channel
-                .range_v
-                .filter(|range| Some(*range) == later.range_v);
+            channel.range_v = channel.range_v.filter(|range| Some(*range) == later.range_v);
         }
     }
 

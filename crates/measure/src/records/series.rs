@@ -123,9 +123,7 @@ impl OpenSeries {
         let channel = |(name, samples): &(&'static str, H5Dataset)| {
             let counts = samples.read_slice::<i16>(&[row, 0], &[1, self.length])?;
             let (scale, offset) = (self.volts_per_count, self.offset_v);
-            let volts = counts
-                .into_iter()
-                .map(|count| f64::from(count) * scale + offset);
+            let volts = counts.into_iter().map(|count| f64::from(count) * scale + offset);
             Ok(Channel {
                 name: (*name).to_owned(),
                 volts: volts.collect(),
@@ -275,9 +273,7 @@ fn difference(
     let shape = [shots, info.samples_per_shot];
     if let Some((name, found)) = channels.iter().find(|(_, found)| found.shape() != shape) {
         let found = found.shape();
-        return Ok(Some(format!(
-            "`{name}` has the axes {found:?}, not {shape:?}"
-        )));
+        return Ok(Some(format!("`{name}` has the axes {found:?}, not {shape:?}")));
     }
     let numbers = column::<i64>(&open, SHOT, shots)?;
     let speeds = column::<f64>(&open, PROGRAMMED, shots)?;

@@ -42,12 +42,7 @@ pub(crate) struct StoredNumber {
 
 impl StoredNumber {
     pub(super) fn plain(kind: NumberKind, big_endian: bool) -> Self {
-        Self {
-            kind,
-            big_endian,
-            scale: 1.0,
-            offset: 0.0,
-        }
+        Self { kind, big_endian, scale: 1.0, offset: 0.0 }
     }
 
     pub(super) fn width(&self) -> usize {
@@ -139,18 +134,8 @@ pub(crate) struct StoredChannel {
 
 impl StoredChannel {
     pub(super) fn run(number: StoredNumber, offset: u64, count: usize, stride: usize) -> Self {
-        let run = SampleRuns {
-            offset,
-            count,
-            stride,
-            chunks: 1,
-            chunk_bytes: 0,
-        };
-        Self {
-            number,
-            scales: Vec::new(),
-            runs: vec![run],
-        }
+        let run = SampleRuns { offset, count, stride, chunks: 1, chunk_bytes: 0 };
+        Self { number, scales: Vec::new(), runs: vec![run] }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -324,11 +309,7 @@ impl Head {
         samples: Vec<Samples>,
     ) -> Record {
         let named = self.names.iter().cloned().zip(samples);
-        let channels = named.map(|(name, (volts, range_v))| Channel {
-            name,
-            volts,
-            range_v,
-        });
+        let channels = named.map(|(name, (volts, range_v))| Channel { name, volts, range_v });
         Record {
             shot,
             first_sample,

@@ -68,14 +68,10 @@ fn open_group(
         let why = "as in its first channel";
         return Err(MeasureError::lengths(source, other.len(), frames, why));
     }
-    let stated_s = names
-        .iter()
-        .find_map(|name| channels[name].number("wf_increment"));
+    let stated_s = names.iter().find_map(|name| channels[name].number("wf_increment"));
     let own = times.and_then(|(name, step)| Some((name, arrays::step_s(step, options)?)));
     let own = own.filter(|_| stated_s.is_none());
-    let note = own
-        .as_ref()
-        .and_then(|(name, _)| seconds_assumed(name, None, options));
+    let note = own.as_ref().and_then(|(name, _)| seconds_assumed(name, None, options));
     let head = Head {
         file: file.to_owned(),
         part: Some(group),
@@ -85,12 +81,8 @@ fn open_group(
         frames,
         note,
     };
-    let table = StoredTable {
-        file: file.to_owned(),
-        reader: opened,
-        channels: stored,
-        row_bytes: 0,
-    };
+    let table =
+        StoredTable { file: file.to_owned(), reader: opened, channels: stored, row_bytes: 0 };
     Ok(head.records(options.parts, table))
 }
 
@@ -356,13 +348,7 @@ impl Card {
         let (code, card, within) = first?;
         let cards = bytes.u32()?;
         let rows = (0..cards).map(|_| bytes.u32().map(|row| row as usize));
-        Some(Self {
-            code,
-            count,
-            card,
-            within,
-            rows: rows.collect::<Option<_>>()?,
-        })
+        Some(Self { code, count, card, within, rows: rows.collect::<Option<_>>()? })
     }
 }
 
@@ -392,18 +378,11 @@ struct Lead {
 
 impl Lead {
     fn parse(bytes: &[u8]) -> Option<Self> {
-        let mut bytes = Bytes {
-            left: bytes.strip_prefix(b"TDSm")?,
-            big_endian: false,
-        };
+        let mut bytes = Bytes { left: bytes.strip_prefix(b"TDSm")?, big_endian: false };
         let flags = bytes.u32()?;
         bytes.big_endian = flags & BIG_ENDIAN != 0;
         let _version = bytes.u32()?;
-        Some(Self {
-            flags,
-            next: bytes.u64()?,
-            metadata: bytes.u64()?,
-        })
+        Some(Self { flags, next: bytes.u64()?, metadata: bytes.u64()? })
     }
 
     fn has(&self, flag: u32) -> bool {
@@ -436,9 +415,7 @@ impl Index {
                 let size = (raw - begin).min(MOST_METADATA);
                 let metadata = read_at(&mut opened, begin, size).map_err(reading)?;
                 walk.metadata(&lead, &metadata).ok_or_else(|| {
-                    malformed(format!(
-                        "the segment at byte {at} has metadata it cannot have"
-                    ))
+                    malformed(format!("the segment at byte {at} has metadata it cannot have"))
                 })?;
             }
             if lead.has(SAMPLES) && end > raw {
@@ -474,10 +451,7 @@ fn read_at(opened: &mut File, at: u64, count: u64) -> io::Result<Vec<u8>> {
 impl TdmsWalk {
     /// One segment's list of objects; `None` if it is cut short.
     fn metadata(&mut self, lead: &Lead, metadata: &[u8]) -> Option<()> {
-        let mut bytes = Bytes {
-            left: metadata,
-            big_endian: lead.has(BIG_ENDIAN),
-        };
+        let mut bytes = Bytes { left: metadata, big_endian: lead.has(BIG_ENDIAN) };
         if lead.has(NEW_LIST) {
             self.objects.clear();
         }
@@ -525,11 +499,7 @@ impl TdmsWalk {
         let name = name.replace("''", "'");
         if !group.contains_key(&name) {
             let number = StoredNumber::plain(kind(code?)?, big);
-            let stored = StoredChannel {
-                number,
-                scales: Vec::new(),
-                runs: Vec::new(),
-            };
+            let stored = StoredChannel { number, scales: Vec::new(), runs: Vec::new() };
             let properties = HashMap::new();
             group.insert(name.clone(), TdmsChannel { stored, properties });
         }
@@ -579,12 +549,7 @@ fn of_objects(with: &[(String, Values)], rows: bool) -> (Vec<(&str, ChunkPlace)>
     let (mut places, mut begin, mut chunk_bytes) = (Vec::new(), 0_usize, 0_usize);
     for (path, code, count, size) in own {
         let wide = width(code).unwrap_or(0);
-        let place = ChunkPlace {
-            code,
-            begin,
-            count,
-            stride: if rows { row } else { wide },
-        };
+        let place = ChunkPlace { code, begin, count, stride: if rows { row } else { wide } };
         places.push((path, place));
         begin = begin.saturating_add(if rows { wide } else { size });
         chunk_bytes = chunk_bytes.saturating_add(size);
@@ -599,10 +564,7 @@ fn of_cards(with: &[(String, Values)]) -> (Vec<(&str, ChunkPlace)>, usize) {
         Values::Card(layout) => Some((path.as_str(), layout)),
         Values::Own(..) => None,
     });
-    let rows = own
-        .clone()
-        .next()
-        .map_or(&[][..], |(_, layout)| &layout.rows);
+    let rows = own.clone().next().map_or(&[][..], |(_, layout)| &layout.rows);
     let (mut begins, mut end) = (Vec::new(), 0_usize);
     for (card, row) in rows.iter().enumerate() {
         let counts = own.clone().filter(|(_, layout)| layout.card == card);

@@ -59,11 +59,7 @@ fn number(file: &Path, spec: WavSpec) -> Result<StoredNumber, MeasureError> {
             return Err(MeasureError::malformed(file, "WAV", detail));
         }
     };
-    Ok(StoredNumber {
-        scale,
-        offset,
-        ..StoredNumber::plain(kind, false)
-    })
+    Ok(StoredNumber { scale, offset, ..StoredNumber::plain(kind, false) })
 }
 
 fn refused(file: &Path, error: hound::Error) -> MeasureError {

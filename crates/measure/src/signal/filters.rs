@@ -84,12 +84,7 @@ impl LowPass {
         let turns = self.cutoff_hz * interval_s;
         let expected = "a number between 0 and half the sampling rate";
         let accepted = turns > 0.0 && turns < 0.5;
-        MeasureError::require(
-            accepted,
-            "cutoff of the low-pass in Hz",
-            self.cutoff_hz,
-            expected,
-        )?;
+        MeasureError::require(accepted, "cutoff of the low-pass in Hz", self.cutoff_hz, expected)?;
         let order = self.order as f64;
         let accepted = self.order == 2 || self.order == 4;
         MeasureError::require(accepted, "order of the low-pass", order, "2 or 4")?;
@@ -106,10 +101,7 @@ impl Biquad {
         let norm = (1.0 + 2.0 * damping * k + k * k).recip();
         let b0 = k * k * norm;
         let a2 = (1.0 - 2.0 * damping * k + k * k) * norm;
-        Self {
-            b: [b0, 2.0 * b0, b0],
-            a: [2.0 * (k * k - 1.0) * norm, a2],
-        }
+        Self { b: [b0, 2.0 * b0, b0], a: [2.0 * (k * k - 1.0) * norm, a2] }
     }
 
     /// Filters in place, as if the first sample had lasted for ever before.

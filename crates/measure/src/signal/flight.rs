@@ -72,11 +72,7 @@ pub fn measure(
         }
     }
     let changed = options.high_pass_s.is_some() || options.low_pass.is_some();
-    let ranges = if changed {
-        [None; 2]
-    } else {
-        find.ranges(channels)
-    };
+    let ranges = if changed { [None; 2] } else { find.ranges(channels) };
     let corrections = (ranges, options.bandwidth);
     let picks = pick(channels, interval_s, &found, &options.method, corrections);
     let flight = picks.map(Picks::flight);
@@ -225,20 +221,14 @@ impl Picks {
     /// Times of flight and height ratios from the three pulses.
     #[must_use]
     pub fn flight(self) -> Flight {
-        let height = |picked: Picked| Estimate {
-            value: picked.height,
-            sigma: picked.height_sigma,
-        };
+        let height = |picked: Picked| Estimate { value: picked.height, sigma: picked.height_sigma };
         // The error of having taken another maximum for the largest: as far as that lies off, with
         // the root of its probability.
         let time = |picked: Picked, kind: PulseKind| {
             let of_other = self.competing[kind as usize].map_or(0.0, |other| {
                 other.p_value().sqrt() * (other.picked.time_s - picked.time_s)
             });
-            Estimate {
-                value: picked.time_s,
-                sigma: picked.sigma_s.hypot(of_other),
-            }
+            Estimate { value: picked.time_s, sigma: picked.sigma_s.hypot(of_other) }
         };
         let between = |from: Estimate, to: Estimate| Estimate {
             value: to.value - from.value,

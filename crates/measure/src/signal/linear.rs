@@ -22,11 +22,7 @@ pub(crate) struct LinearSolution {
 
 impl NormalEquations {
     pub(crate) fn new(size: usize) -> Self {
-        Self {
-            matrix: [[0.0; MOST]; MOST],
-            right: [0.0; MOST],
-            size: size.min(MOST),
-        }
+        Self { matrix: [[0.0; MOST]; MOST], right: [0.0; MOST], size: size.min(MOST) }
     }
 
     /// Adds one equation Σ row_k · parameter_k = value of weight 1.
@@ -136,22 +132,14 @@ pub(crate) fn levenberg_marquardt<M>(
     converged: impl Fn(&M, &M) -> bool,
 ) -> Option<Optimum<M>> {
     let (normal, squares) = equations(&start)?;
-    let mut at = Optimum {
-        model: start,
-        normal,
-        squares,
-    };
+    let mut at = Optimum { model: start, normal, squares };
     let mut damping = 1e-3;
     for _ in 0..60 {
         let model = moved(&at.model, &at.normal.damped_step(1.0 + damping)?);
         let tried = equations(&model).filter(|(_, squares)| *squares <= at.squares);
         if let Some((normal, squares)) = tried {
             let done = converged(&at.model, &model);
-            at = Optimum {
-                model,
-                normal,
-                squares,
-            };
+            at = Optimum { model, normal, squares };
             damping *= 0.1;
             if done {
                 return Some(at);
@@ -230,11 +218,7 @@ impl LocalPolynomial {
             slope = slope * u + value;
             value = value * u + c;
         }
-        Derivatives {
-            value,
-            slope,
-            curvature,
-        }
+        Derivatives { value, slope, curvature }
     }
 
     pub(crate) fn sample(&self, u: f64) -> f64 {

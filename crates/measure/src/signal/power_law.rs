@@ -152,13 +152,7 @@ impl LogPoints {
             let (u, v) = (self.x[i] - mean_x, self.y[i] - mean_y);
             weights[i] * (u * self.y_variance[i] + slope * v * self.x_variance[i])
         });
-        YorkWeights {
-            adjusted: adjusted.collect(),
-            weights,
-            total,
-            mean_x,
-            mean_y,
-        }
+        YorkWeights { adjusted: adjusted.collect(), weights, total, mean_x, mean_y }
     }
 
     /// Σ W β V / Σ W β U.
@@ -259,10 +253,7 @@ pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, M
         let parts = x.iter().zip(relative);
         parts.map(|(x, error)| part(x).abs() * error).sum()
     };
-    Ok(Uncertainty {
-        prefactor_relative: bound(&level),
-        exponent: bound(&slope),
-    })
+    Ok(Uncertainty { prefactor_relative: bound(&level), exponent: bound(&slope) })
 }
 
 /// Requires positive abscissas and values, errors of 0 or more, all of one length.

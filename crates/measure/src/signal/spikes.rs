@@ -89,23 +89,15 @@ fn screened(samples: &[f64]) -> Option<(f64, Vec<usize>)> {
 fn least_noise(samples: &[f64], stride: usize) -> f64 {
     let pairs = samples.windows(2).step_by(stride);
     let steps = pairs.map(|pair| (pair[1] - pair[0]).abs());
-    let step = steps
-        .filter(|step| *step > 0.0)
-        .fold(f64::INFINITY, f64::min);
-    let rounding = if step.is_finite() {
-        ROUNDING * step
-    } else {
-        0.0
-    };
+    let step = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
+    let rounding = if step.is_finite() { ROUNDING * step } else { 0.0 };
     let from_first = samples.iter().map(|x| (x - samples[0]).abs());
     rounding.max(LEAST_NOISE * from_first.fold(0.0, f64::max))
 }
 
 /// What a sample should be, if it is a spike.
 fn expected(samples: &[f64], at: usize, noise: f64) -> Option<f64> {
-    let tries = REACHES
-        .iter()
-        .filter_map(|reach| interpolated(samples, at, *reach, noise));
+    let tries = REACHES.iter().filter_map(|reach| interpolated(samples, at, *reach, noise));
     let best = tries.min_by(|a, b| a.error.total_cmp(&b.error))?;
     let off = (samples[at] - best.value).abs();
     (off > STANDS_OUT * best.error).then_some(best.value)
@@ -163,12 +155,7 @@ fn interpolate(
     let (worst, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let own = row(at);
     let deviation = (squares / freedom).sqrt().max(noise);
-    let interpolated = Interpolated {
-        value: value(&own),
-        error: deviation * (1.0 + fit.variance(&own)).sqrt(),
-    };
-    Some((
-        interpolated,
-        (ratio > STANDS_OUT * STANDS_OUT).then_some(worst),
-    ))
+    let interpolated =
+        Interpolated { value: value(&own), error: deviation * (1.0 + fit.variance(&own)).sqrt() };
+    Some((interpolated, (ratio > STANDS_OUT * STANDS_OUT).then_some(worst)))
 }

@@ -79,19 +79,9 @@ pub fn summary(measured: &[Estimate]) -> Option<Summary> {
         1 => first.sigma,
         _ => deviation / n.sqrt(),
     };
-    let plain = Estimate {
-        value: mean,
-        sigma: error,
-    };
+    let plain = Estimate { value: mean, sigma: error };
     let (weighted, chi_square) = weighted(&finite, mean).unwrap_or((plain, f64::NAN));
-    Some(Summary {
-        count,
-        mean,
-        deviation,
-        error,
-        weighted,
-        chi_square,
-    })
+    Some(Summary { count, mean, deviation, error, weighted, chi_square })
 }
 
 fn weighted(measured: &[Estimate], about: f64) -> Option<(Estimate, f64)> {
@@ -102,9 +92,7 @@ fn weighted(measured: &[Estimate], about: f64) -> Option<(Estimate, f64)> {
     }
     let shift: f64 = measured.iter().map(|m| weight(m) * (m.value - about)).sum();
     let value = about + shift / all;
-    let squares = measured
-        .iter()
-        .map(|m| weight(m) * (m.value - value).powi(2));
+    let squares = measured.iter().map(|m| weight(m) * (m.value - value).powi(2));
     let sigma = all.recip().sqrt();
     Some((Estimate { value, sigma }, squares.sum()))
 }

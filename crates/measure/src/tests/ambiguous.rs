@@ -1,25 +1,13 @@
 use super::*;
 
 fn each(values: &[f64], sigma: f64) -> Vec<Estimate> {
-    values
-        .iter()
-        .map(|value| Estimate {
-            value: *value,
-            sigma,
-        })
-        .collect()
+    values.iter().map(|value| Estimate { value: *value, sigma }).collect()
 }
 
 #[test]
 fn shots_that_scatter_by_noise_alone_have_their_mean() {
     let all = each(&[1.0, 3.0, 2.0, 2.0], 2.0);
-    let found = combined(
-        Estimate {
-            value: -3.0,
-            sigma: 2.0,
-        },
-        &all,
-    );
+    let found = combined(Estimate { value: -3.0, sigma: 2.0 }, &all);
     // Mean 2, its error 2/√4.
     assert_eq!((found.value, found.sigma), (2.0, 1.0));
 }

@@ -4,9 +4,7 @@ use super::*;
 fn normals() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     let mut uniform = move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
@@ -59,8 +57,5 @@ fn shots_without_a_return_dilute_the_correlation() {
     // −1 of ten pairs over 10 · 20.
     assert!(all.iter().all(|pairs| (pairs.picking + 0.05).abs() < 1e-15));
     let two = groups(0.0, 2);
-    assert!(
-        two.iter()
-            .all(|pairs| pairs.of_means([0.3; 2]) == Some(0.0))
-    );
+    assert!(two.iter().all(|pairs| pairs.of_means([0.3; 2]) == Some(0.0)));
 }

@@ -30,14 +30,7 @@ fn places(shots: &[Segment]) -> Vec<(u64, u64, u64)> {
 }
 
 fn level(level: f64, before: usize, length: usize) -> LevelTrigger {
-    LevelTrigger {
-        level,
-        falling: false,
-        hysteresis: 2.0,
-        before,
-        length,
-        hold_off: 0,
-    }
+    LevelTrigger { level, falling: false, hysteresis: 2.0, before, length, hold_off: 0 }
 }
 
 #[test]
@@ -78,11 +71,7 @@ fn a_falling_trigger_is_a_rising_one_upside_down() {
     let recording: Vec<i16> = (0..500).map(|i| (i * i * 7 % 41) as i16 - 20).collect();
     let turned: Vec<i16> = recording.iter().map(|x| -x).collect();
     let rising = level(12.0, 3, 9);
-    let falling = LevelTrigger {
-        level: -12.0,
-        falling: true,
-        ..rising
-    };
+    let falling = LevelTrigger { level: -12.0, falling: true, ..rising };
     let up = cut(rising, &recording, &[]);
     let down = cut(falling, &turned, &[]);
     assert!(up.len() > 5);

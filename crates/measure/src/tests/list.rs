@@ -50,10 +50,7 @@ fn quoted_fields_keep_their_commas_and_quotes() {
     let list = ShotList::parse(list).unwrap();
     let entry = list.find(Path::new("run 1, dry.csv"), None).unwrap();
     let case = entry.case.as_deref();
-    assert_eq!(
-        (case, entry.speed_m_s),
-        (Some("gear, 2 drops of \"EP\""), Some(0.5))
-    );
+    assert_eq!((case, entry.speed_m_s), (Some("gear, 2 drops of \"EP\""), Some(0.5)));
     assert_eq!(list.entries.len(), 1);
     let list = ShotList::parse("file,speed\na.csv,\"0,5\"\n");
     assert!(

@@ -14,10 +14,7 @@ fn recording(shots: &[(usize, f64)], samples: usize) -> Vec<f64> {
 }
 
 fn channels<const N: usize>(volts: [Vec<f64>; N]) -> [Channel; N] {
-    volts.map(|volts| Channel {
-        volts,
-        ..Channel::default()
-    })
+    volts.map(|volts| Channel { volts, ..Channel::default() })
 }
 
 /// One channel.
@@ -28,9 +25,7 @@ fn one(shots: &[(usize, f64)]) -> Content {
 #[test]
 fn shots_with_quiet_between_are_plain() {
     let shots = [(1000, 1.0), (21_000, 0.9), (41_000, 1.0)];
-    let Content::Plain(ranges) = one(&shots) else {
-        unreachable!("three shots are plain")
-    };
+    let Content::Plain(ranges) = one(&shots) else { unreachable!("three shots are plain") };
     assert_eq!(ranges.len(), 3);
     for ((from, to), (at, _)) in ranges.iter().zip(shots) {
         assert!(*from + 100 < at && at + 1600 < *to, "{from}..{to} of {at}");

@@ -21,10 +21,7 @@ const KEPT: &[&str] = &[
 ];
 
 fn at_1_mhz() -> ReadOptions {
-    ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    }
+    ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() }
 }
 
 fn results(path: &Path) -> Vec<Result<Record, MeasureError>> {
@@ -50,21 +47,9 @@ fn each_failing_is_one_clear_report() {
     for (name, content, expected) in [
         ("empty.csv", "", "holds no samples"),
         ("prose.csv", "alas, poor Yorick\n", "no columns of numbers"),
-        (
-            "constant.csv",
-            "2.5\n2.5\n2.5\n2.5\n",
-            "all 4 samples in \"1\" are 2.5",
-        ),
-        (
-            "nan.csv",
-            "1.5\nnan\n2.5\ninf\n",
-            "2 of 4 samples in \"1\" are not finite",
-        ),
-        (
-            "bad.csv",
-            "1.5\n2.5\n3.5\n-.-\n1.5\n2.5\n3.5\n1.5\n",
-            "line 4 is no row of numbers",
-        ),
+        ("constant.csv", "2.5\n2.5\n2.5\n2.5\n", "all 4 samples in \"1\" are 2.5"),
+        ("nan.csv", "1.5\nnan\n2.5\ninf\n", "2 of 4 samples in \"1\" are not finite"),
+        ("bad.csv", "1.5\n2.5\n3.5\n-.-\n1.5\n2.5\n3.5\n1.5\n", "line 4 is no row of numbers"),
         ("lie.wav", numbers, "is called .wav but holds text"),
         ("lie.npy", numbers, "is called .npy but holds text"),
         (
@@ -100,10 +85,7 @@ fn a_missing_rate_and_a_wrong_one_are_told() {
     assert!(
         matches!(&open[0], Err(MeasureError::Rate(_, why)) if why.contains("does not say how fast"))
     );
-    let wrong = ReadOptions {
-        rate_hz: Some(5e5),
-        ..ReadOptions::default()
-    };
+    let wrong = ReadOptions { rate_hz: Some(5e5), ..ReadOptions::default() };
     for name in ["shots.tdms", "both.wav", "oscilloscope.csv"] {
         let reported: Vec<_> = read(&kept(name), &wrong).collect();
         assert!(
@@ -127,18 +109,12 @@ fn what_was_taken_for_granted_is_told() {
     let open = ReadOptions::default();
     assert!(notes(&bare, &open)[0].contains("its first column names no unit"));
     assert!(notes(&titled, &open)[0].contains("\"t\" names no unit"));
-    let reported = ReadOptions {
-        time_unit_s: Some(1e-6),
-        ..ReadOptions::default()
-    };
+    let reported = ReadOptions { time_unit_s: Some(1e-6), ..ReadOptions::default() };
     let record = read(&titled, &reported).next().unwrap().unwrap();
     assert_eq!((record.interval_s, record.notes.len()), (2e-6, 0));
     let unit = file("unit.csv", format!("t (us),a\n{rows}"));
     assert_eq!(notes(&unit, &open).len(), 0);
-    let two = file(
-        "two.csv",
-        "t (s),x,y\n0,1,2\n1,2,1\n2,1,3\n3,5,1\n".to_owned(),
-    );
+    let two = file("two.csv", "t (s),x,y\n0,1,2\n1,2,1\n2,1,3\n3,5,1\n".to_owned());
     let note = notes(&two, &open).remove(0);
     assert!(note.contains("\"x\" was taken for the sensor"), "{note}");
 }
@@ -150,14 +126,8 @@ fn a_jump_in_times_is_told_where_it_is() {
     let rows: String = times.map(|t| format!("{t},{}\n", t % 7)).collect();
     let path = file(&folder, "jump.csv", &format!("t (us),a\n{rows}"));
     let reported = only_error(&path);
-    assert!(
-        reported.contains("from sample 60, at 0.000059 s"),
-        "{reported}"
-    );
-    assert!(
-        reported.contains("by 4.0000 µs where steps of 1.0000 µs"),
-        "{reported}"
-    );
+    assert!(reported.contains("from sample 60, at 0.000059 s"), "{reported}");
+    assert!(reported.contains("by 4.0000 µs where steps of 1.0000 µs"), "{reported}");
 }
 
 #[test]

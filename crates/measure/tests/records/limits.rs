@@ -72,13 +72,8 @@ fn millions_of_short_rows_are_no_shots() {
     let length = u16::try_from(header.len()).unwrap().to_le_bytes();
     fs::write(&file, npy(1, &length, header)).unwrap();
     let opened = fs::OpenOptions::new().append(true).open(&file).unwrap();
-    opened
-        .set_len(10 + header.len() as u64 + 20_000_000)
-        .unwrap();
-    let as_shots = ReadOptions {
-        rows: Rows::Shots,
-        ..at_1_mhz()
-    };
+    opened.set_len(10 + header.len() as u64 + 20_000_000).unwrap();
+    let as_shots = ReadOptions { rows: Rows::Shots, ..at_1_mhz() };
     let (mut count, mut last) = (0, None);
     for record in read(&file, &as_shots) {
         (count, last) = (count + 1, record.err());
@@ -93,10 +88,7 @@ fn an_interval_that_no_recorder_has_is_refused() {
     let file = folder("interval").join("a.csv");
     fs::write(&file, "0.1,0.2\n".repeat(50)).unwrap();
     for rate_hz in [1e300, 1e-300, 1e13, 1e-4] {
-        let options = ReadOptions {
-            rate_hz: Some(rate_hz),
-            ..ReadOptions::default()
-        };
+        let options = ReadOptions { rate_hz: Some(rate_hz), ..ReadOptions::default() };
         let error = read(&file, &options).next().unwrap().unwrap_err();
         assert!(error.to_string().contains("impossible"), "{error}");
         assert!(error.to_string().len() < 200, "{error}");
@@ -167,13 +159,7 @@ with h5py.File('link.h5', 'w') as file:
     assert!(read(&folder.join("source.h5"), &at_1_mhz()).all(|record| record.is_ok()));
     for name in ["external.h5", "virtual.h5", "link.h5"] {
         let error = refusal(&folder.join(name)).to_string();
-        let why = [
-            "in other files",
-            "without samples",
-            "no datasets",
-            "empty",
-            "no samples",
-        ];
+        let why = ["in other files", "without samples", "no datasets", "empty", "no samples"];
         assert!(why.iter().any(|why| error.contains(why)), "{name}: {error}");
     }
 }

@@ -21,9 +21,7 @@ fn hollow(file: &Path, shape: (usize, usize), fortran: bool, readings: &[(usize,
     bytes.extend(head.bytes());
     std::fs::write(file, &bytes).unwrap();
     let mut opened = std::fs::OpenOptions::new().write(true).open(file).unwrap();
-    opened
-        .set_len((bytes.len() + shape.0 * shape.1) as u64)
-        .unwrap();
+    opened.set_len((bytes.len() + shape.0 * shape.1) as u64).unwrap();
     for (at, reading) in readings {
         let place = SeekFrom::Start((bytes.len() + at) as u64);
         opened.seek(place).unwrap();
@@ -38,12 +36,7 @@ const LONG: usize = (1 << 27) + 1;
 fn rows_too_long_for_memory_are_read_in_pieces() {
     let folder = folder("hollow");
     for rows in [1, 2] {
-        hollow(
-            &folder.join(format!("{rows}.npy")),
-            (rows, LONG),
-            false,
-            &[],
-        );
+        hollow(&folder.join(format!("{rows}.npy")), (rows, LONG), false, &[]);
     }
     let mut names = vec!["1.npy", "2.npy"];
     let program = format!(
@@ -55,30 +48,17 @@ fn rows_too_long_for_memory_are_read_in_pieces() {
         let file = folder.join(name);
         let whole = read(&file, &at_1_mhz()).next().unwrap().unwrap_err();
         assert!(whole.to_string().contains("--level"), "{name}: {whole}");
-        let pieces = ReadOptions {
-            parts: Parts::Pieces(1 << 20),
-            ..at_1_mhz()
-        };
+        let pieces = ReadOptions { parts: Parts::Pieces(1 << 20), ..at_1_mhz() };
         for (at, piece) in read(&file, &pieces).take(3).enumerate() {
             let piece = piece.unwrap();
-            assert_eq!(
-                (piece.first_sample, piece.len()),
-                ((at as u64) << 20, 1 << 20),
-                "{name}"
-            );
+            assert_eq!((piece.first_sample, piece.len()), ((at as u64) << 20, 1 << 20), "{name}");
         }
     }
-    let shots = ReadOptions {
-        parts: Parts::Shots(1000),
-        ..at_1_mhz()
-    };
+    let shots = ReadOptions { parts: Parts::Shots(1000), ..at_1_mhz() };
     // Nothing but zeros is no shot, but it was read as one.
     let first = read(&folder.join("1.npy"), &shots).next().unwrap();
     let error = first.unwrap_err().to_string();
-    assert!(
-        error.contains("shot 1") && error.contains("1000"),
-        "{error}"
-    );
+    assert!(error.contains("shot 1") && error.contains("1000"), "{error}");
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
@@ -86,17 +66,8 @@ fn rows_too_long_for_memory_are_read_in_pieces() {
 fn channels_stored_one_after_the_other_are_read_in_pieces() {
     let folder = folder("planes");
     let file = folder.join("planes.npy");
-    hollow(
-        &file,
-        (2, LONG),
-        false,
-        &[(5, 6), (LONG + 3, 7), (2 * LONG - 1, 8)],
-    );
-    let channels = |parts| ReadOptions {
-        rows: Rows::Channels,
-        parts,
-        ..at_1_mhz()
-    };
+    hollow(&file, (2, LONG), false, &[(5, 6), (LONG + 3, 7), (2 * LONG - 1, 8)]);
+    let channels = |parts| ReadOptions { rows: Rows::Channels, parts, ..at_1_mhz() };
     let whole = read(&file, &channels(Parts::Whole)).next().unwrap();
     assert!(matches!(whole, Err(MeasureError::Samples(_, why)) if why.contains("more than")));
     let mut pieces = read(&file, &channels(Parts::Pieces(1 << 20)));
@@ -117,16 +88,8 @@ fn shots_of_which_samples_alternate_are_read_in_pieces() {
     let file = folder.join("alternating.npy");
     // More numbers in all than are held together.
     let frames = (1 << 24) + 3;
-    hollow(
-        &file,
-        (2, frames),
-        true,
-        &[(10, 6), (11, 7), (2 * frames - 1, 8)],
-    );
-    let pieces = ReadOptions {
-        parts: Parts::Pieces(1 << 20),
-        ..at_1_mhz()
-    };
+    hollow(&file, (2, frames), true, &[(10, 6), (11, 7), (2 * frames - 1, 8)]);
+    let pieces = ReadOptions { parts: Parts::Pieces(1 << 20), ..at_1_mhz() };
     let pieces = read(&file, &pieces).map(|piece| piece.unwrap());
     let reported = pieces.map(|piece| {
         let volts = piece.channels[0].volts.clone();

@@ -1,9 +1,5 @@
 //! All tests of the crate from outside, as one program: linked once.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 mod common;
 mod damaged;

@@ -67,15 +67,8 @@ fn utf_16_and_any_end_of_line_are_read_alike() {
 fn segments_apart_by_empty_lines_stay_so_with_cr_alone() {
     let folder = folder("segments-cr");
     let block = "1.5\r2.5\r0.5\r1.0\r";
-    let path = written(
-        &folder,
-        "segments.csv",
-        format!("{block}\r{block}\r\r{block}"),
-    );
-    let options = ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    };
+    let path = written(&folder, "segments.csv", format!("{block}\r{block}\r\r{block}"));
+    let options = ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() };
     assert_eq!(read(&path, &options).map(Result::unwrap).count(), 3);
 }
 
@@ -116,21 +109,9 @@ fn gaps(record: &Record) -> Vec<(usize, usize)> {
 #[test]
 fn single_cells_without_a_number_are_gaps_and_refuse_nothing() {
     let folder = folder("cells");
-    let cells = [
-        (200, "OVERLOAD"),
-        (300, "NaN"),
-        (301, ""),
-        (400, "-inf"),
-        (999, "#N/A"),
-    ];
-    let record = only(
-        &written(&folder, "cells.csv", with_cells(&cells)),
-        &ReadOptions::default(),
-    );
-    assert_eq!(
-        gaps(&record),
-        [(200, 201), (300, 302), (400, 401), (999, 1000)]
-    );
+    let cells = [(200, "OVERLOAD"), (300, "NaN"), (301, ""), (400, "-inf"), (999, "#N/A")];
+    let record = only(&written(&folder, "cells.csv", with_cells(&cells)), &ReadOptions::default());
+    assert_eq!(gaps(&record), [(200, 201), (300, 302), (400, 401), (999, 1000)]);
     let volts = record.channels[0].volts.clone();
     assert_eq!((volts[200], volts[400]), (0.22, 0.0));
     let between = volt(299) + (volt(302) - volt(299)) / 3.0;
@@ -138,24 +119,14 @@ fn single_cells_without_a_number_are_gaps_and_refuse_nothing() {
     assert_eq!(volts[999], volts[998]);
     // Other words are mistakes, as ever.
     let wrong = written(&folder, "wrong.csv", with_cells(&[(200, "what?")]));
-    let reported = read(&wrong, &ReadOptions::default())
-        .next()
-        .unwrap()
-        .unwrap_err();
-    assert!(
-        reported.to_string().contains("line 202 is no row"),
-        "{reported}"
-    );
+    let reported = read(&wrong, &ReadOptions::default()).next().unwrap().unwrap_err();
+    assert!(reported.to_string().contains("line 202 is no row"), "{reported}");
 }
 
 #[test]
 fn gaps_go_with_the_parts_of_a_recording() {
     let folder = folder("gap-parts");
-    let path = written(
-        &folder,
-        "cells.csv",
-        with_cells(&[(499, "nan"), (500, "nan")]),
-    );
+    let path = written(&folder, "cells.csv", with_cells(&[(499, "nan"), (500, "nan")]));
     let options = ReadOptions {
         parts: hertzchain_measure::records::Parts::Shots(500),
         ..ReadOptions::default()
@@ -197,11 +168,7 @@ fn times_in_an_array_are_no_channel() {
         assert_volts(&record, 0, 900);
         // Rounding of sums.
         assert!((record.interval_s - 2e-6).abs() < 1e-15, "{name}");
-        assert!(
-            record.notes[0].contains("taken as times in s"),
-            "{:?}",
-            record.notes
-        );
+        assert!(record.notes[0].contains("taken as times in s"), "{:?}", record.notes);
         let asked = ReadOptions {
             channels: vec!["1".to_owned()],
             rate_hz: Some(5e5),
@@ -231,10 +198,7 @@ fn two_channels_of_an_array_are_still_two_channels() {
     let folder = folder("array-channels");
     let rows = (0..900).flat_map(|i| [volt(i), volt(i + 3)]);
     let path = written(&folder, "two.npy", npy("(900, 2)", "False", rows));
-    let options = ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    };
+    let options = ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() };
     assert_eq!(only(&path, &options).channels.len(), 2);
 }
 
@@ -243,10 +207,7 @@ fn a_single_number_that_is_none_is_a_gap_in_an_array_too() {
     let folder = folder("array-gap");
     let values = (0..900).map(|i| if i == 77 { f64::NAN } else { volt(i) });
     let path = written(&folder, "gap.npy", npy("(900,)", "False", values));
-    let options = ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    };
+    let options = ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() };
     assert_eq!(gaps(&only(&path, &options)), [(77, 78)]);
 }
 
@@ -256,18 +217,9 @@ fn half_an_array_is_told_as_such_before_a_rate_is_asked_for() {
     let mut bytes = npy("(900,)", "False", (0..900).map(volt));
     bytes.truncate(bytes.len() - 4000);
     let path = written(&folder, "half.npy", bytes);
-    let reported = read(&path, &ReadOptions::default())
-        .next()
-        .unwrap()
-        .unwrap_err();
-    assert!(
-        matches!(reported, MeasureError::Truncated(..)),
-        "{reported}"
-    );
-    assert!(
-        reported.to_string().contains("3200 of 7200 bytes"),
-        "{reported}"
-    );
+    let reported = read(&path, &ReadOptions::default()).next().unwrap().unwrap_err();
+    assert!(matches!(reported, MeasureError::Truncated(..)), "{reported}");
+    assert!(reported.to_string().contains("3200 of 7200 bytes"), "{reported}");
 }
 
 #[test]
@@ -278,10 +230,7 @@ fn arrays_of_three_axes_are_read_in_either_order() {
     let rows = rows.flat_map(|(shot, channel)| (0..900).map(move |at| value(shot, channel, at)));
     let columns = (0..900).flat_map(|at| [(0, 0, at), (1, 0, at), (0, 1, at), (1, 1, at)]);
     let columns = columns.map(|(shot, channel, at)| value(shot, channel, at));
-    let options = ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    };
+    let options = ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() };
     let shape = "(2, 2, 900)";
     for bytes in [npy(shape, "False", rows), npy(shape, "True", columns)] {
         let path = written(&folder, "cube.npy", bytes);

@@ -172,11 +172,8 @@ fn shots_that_do_not_fit_their_series_are_refused() {
         truth,
     };
     writer.push(&row(&[1; 50], &[("a_s", 1.0)])).unwrap();
-    for bad in [
-        row(&[1; 49], &[("a_s", 1.0)]),
-        row(&[1; 50], &[("b_s", 1.0)]),
-        row(&[1; 50], &[]),
-    ] {
+    for bad in [row(&[1; 49], &[("a_s", 1.0)]), row(&[1; 50], &[("b_s", 1.0)]), row(&[1; 50], &[])]
+    {
         let error = writer.push(&bad).unwrap_err();
         assert!(error.to_string().contains("shot 3 does not fit"), "{error}");
     }
@@ -220,10 +217,8 @@ fn records_are_the_same_whatever_the_truth_says() {
     }
     let strip = |path: &Path| all(path).remove(0).channels;
     assert_eq!(strip(&a), strip(&b));
-    let peek = ReadOptions {
-        channels: vec!["truth/tof_incident_s".to_owned()],
-        ..ReadOptions::default()
-    };
+    let peek =
+        ReadOptions { channels: vec!["truth/tof_incident_s".to_owned()], ..ReadOptions::default() };
     let peeked: Vec<_> = read(&a, &peek).collect();
     assert!(peeked.iter().all(Result::is_err), "{peeked:?}");
 }

@@ -37,10 +37,7 @@ impl Writer {
 /// values as they are to be stored.
 fn segment(flags: u32, values: &[i16]) -> Vec<u8> {
     let big = flags & BIG_ENDIAN != 0;
-    let new = || Writer {
-        big,
-        bytes: Vec::new(),
-    };
+    let new = || Writer { big, bytes: Vec::new() };
     let mut metadata = new();
     metadata.put(2_u32.to_le_bytes());
     for channel in ["/'rig'/'bead'", "/'rig'/'wall'"] {
@@ -60,10 +57,7 @@ fn segment(flags: u32, values: &[i16]) -> Vec<u8> {
 /// A segment's lead-in, metadata and values.
 fn with_lead(flags: u32, metadata: &Writer, values: &[i16]) -> Vec<u8> {
     let big = metadata.big;
-    let new = || Writer {
-        big,
-        bytes: Vec::new(),
-    };
+    let new = || Writer { big, bytes: Vec::new() };
     let mut raw = new();
     values.iter().for_each(|value| raw.put(value.to_le_bytes()));
     let mut lead = new();
@@ -71,14 +65,7 @@ fn with_lead(flags: u32, metadata: &Writer, values: &[i16]) -> Vec<u8> {
     lead.put(((metadata.bytes.len() + raw.bytes.len()) as u64).to_le_bytes());
     lead.put((metadata.bytes.len() as u64).to_le_bytes());
     let flags = flags.to_le_bytes().to_vec();
-    [
-        b"TDSm".to_vec(),
-        flags,
-        lead.bytes,
-        metadata.bytes.clone(),
-        raw.bytes,
-    ]
-    .concat()
+    [b"TDSm".to_vec(), flags, lead.bytes, metadata.bytes.clone(), raw.bytes].concat()
 }
 
 impl Writer {
@@ -149,10 +136,7 @@ impl Writer {
 
 /// Two chunks of what two DAQ cards logged: two inputs on one, one on the other.
 fn cards() -> Vec<u8> {
-    let mut metadata = Writer {
-        big: false,
-        bytes: Vec::new(),
-    };
+    let mut metadata = Writer { big: false, bytes: Vec::new() };
     metadata.put(3_u32.to_le_bytes());
     metadata.on_card("/'rig'/'bead'", 0, 2);
     metadata.linear();
@@ -214,10 +198,7 @@ for name in ('bead', 'wall'):
 #[test]
 fn a_scale_that_is_no_polynomial_is_named_and_the_other_channels_are_read() {
     let bytes = cards();
-    let at = bytes
-        .windows(10)
-        .position(|part| part == b"Polynomial")
-        .unwrap();
+    let at = bytes.windows(10).position(|part| part == b"Polynomial").unwrap();
     let mut bytes = bytes;
     bytes[at..at + 10].copy_from_slice(b"Thermistor");
     let path = folder("thermistor").join("rig.tdms");
@@ -228,10 +209,7 @@ fn a_scale_that_is_no_polynomial_is_named_and_the_other_channels_are_read() {
     };
     let wall: Vec<_> = read(&path, &reported("wall")).collect();
     let refused = wall[0].as_ref().unwrap_err().to_string();
-    assert!(
-        refused.contains("Thermistor") && refused.contains("scaled values"),
-        "{refused}"
-    );
+    assert!(refused.contains("Thermistor") && refused.contains("scaled values"), "{refused}");
     assert!(read(&path, &reported("bead")).all(|record| record.is_ok()));
 }
 
@@ -253,20 +231,14 @@ const WALL: [f64; 6] = [-1.0, -2.0, -3.0, -4.0, -5.0, -6.0];
 #[test]
 fn several_chunks_of_a_segment_are_joined() {
     let stored = [1, 2, 3, -1, -2, -3, 4, 5, 6, -4, -5, -6];
-    assert_eq!(
-        channels("chunks", &segment(WHOLE, &stored)),
-        [BEAD.to_vec(), WALL.to_vec()]
-    );
+    assert_eq!(channels("chunks", &segment(WHOLE, &stored)), [BEAD.to_vec(), WALL.to_vec()]);
 }
 
 #[test]
 fn interleaved_channels_come_apart() {
     let stored = [1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6];
     let bytes = segment(WHOLE | INTERLEAVED, &stored);
-    assert_eq!(
-        channels("interleaved", &bytes),
-        [BEAD.to_vec(), WALL.to_vec()]
-    );
+    assert_eq!(channels("interleaved", &bytes), [BEAD.to_vec(), WALL.to_vec()]);
 }
 
 #[test]

@@ -49,10 +49,7 @@ fn assert_told(record: &Record, interval_s: f64, unit_s: f64) {
     let stated_s = 3.0_f64.sqrt() * record.interval_error_s;
     let rounding_s = 1e-9 * interval_s;
     assert!(off_s <= stated_s + rounding_s, "{off_s:e} {stated_s:e}");
-    assert!(
-        stated_s <= 2.0 * unit_s / steps + rounding_s,
-        "{stated_s:e}"
-    );
+    assert!(stated_s <= 2.0 * unit_s / steps + rounding_s, "{stated_s:e}");
 }
 
 #[test]
@@ -95,20 +92,14 @@ fn what_digits_leave_open_is_told_once_and_a_rate_ends_it() {
     // No sample at a tie of rounding, which would determine more.
     let printed = |time_s: f64| format!("{:.5}", time_s + 0.3e-6);
     let path = written(&folder, 1e-6, 400, 3, printed);
-    let notes: Vec<Vec<String>> = all(&path, &ReadOptions::default())
-        .into_iter()
-        .map(|record| record.notes)
-        .collect();
+    let notes: Vec<Vec<String>> =
+        all(&path, &ReadOptions::default()).into_iter().map(|record| record.notes).collect();
     assert!(notes[0][0].contains("even only to 10 µs"), "{notes:?}");
     assert!(notes[0][0].contains("1000 kHz, the roundest"), "{notes:?}");
     assert!(notes[0][0].contains("--rate"), "{notes:?}");
     assert!(notes.iter().all(|of| *of == notes[0]), "{notes:?}");
     for trust_rate in [false, true] {
-        let options = ReadOptions {
-            rate_hz: Some(1e6),
-            trust_rate,
-            ..ReadOptions::default()
-        };
+        let options = ReadOptions { rate_hz: Some(1e6), trust_rate, ..ReadOptions::default() };
         let records = all(&path, &options);
         assert_eq!(records.len(), 3);
         for record in records {
@@ -127,10 +118,7 @@ fn digits_that_show_no_step_at_all_ask_for_a_rate() {
     let reported = reported.unwrap_err();
     assert!(reported.to_string().contains("too coarse"), "{reported}");
     assert!(reported.to_string().contains("--rate"), "{reported}");
-    let options = ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    };
+    let options = ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() };
     assert_eq!(all(&path, &options)[0].len(), SAMPLES);
 }
 
@@ -148,15 +136,10 @@ fn a_trusted_rate_makes_any_column_of_times_irrelevant() {
         }),
     ];
     for (what, time) in bad {
-        let rows: String = (0..SAMPLES)
-            .map(|i| format!("{},{:.2}\n", time(i), volt(i)))
-            .collect();
+        let rows: String = (0..SAMPLES).map(|i| format!("{},{:.2}\n", time(i), volt(i))).collect();
         fs::write(&path, "Time (s),A\n".to_owned() + &rows).unwrap();
-        let options = ReadOptions {
-            rate_hz: Some(1e6),
-            trust_rate: true,
-            ..ReadOptions::default()
-        };
+        let options =
+            ReadOptions { rate_hz: Some(1e6), trust_rate: true, ..ReadOptions::default() };
         let records = all(&path, &options);
         assert_eq!(records.len(), 1, "{what}");
         assert_eq!(records[0].len(), SAMPLES, "{what}");
@@ -169,9 +152,8 @@ fn times_that_go_to_and_fro_are_told_once() {
     let folder = folder("fro");
     let path = folder.join("fro.csv");
     let jitter = |i: usize| (i * 7919) % 5 * 10;
-    let rows: String = (0..SAMPLES)
-        .map(|i| format!("{},{:.2}\n", i + jitter(i), volt(i)))
-        .collect();
+    let rows: String =
+        (0..SAMPLES).map(|i| format!("{},{:.2}\n", i + jitter(i), volt(i))).collect();
     fs::write(&path, "t (us),A\n".to_owned() + &rows).unwrap();
     let reported: Vec<_> = read(&path, &ReadOptions::default()).collect();
     assert_eq!(reported.len(), 1);
@@ -211,17 +193,9 @@ fn times_without_a_title_are_told_from_a_signal_though_they_repeat() {
 fn a_stated_interval_that_times_allow_counts_before_them() {
     let folder = folder("stated");
     let path = folder.join("scope.csv");
-    let rows: String = (0..SAMPLES)
-        .map(|i| format!("{:.5},{:.2}\n", i as f64 * 1.0002e-6, volt(i)))
-        .collect();
-    fs::write(
-        &path,
-        format!("Sample Interval,1.0002e-06\nTIME,CH1\n{rows}"),
-    )
-    .unwrap();
+    let rows: String =
+        (0..SAMPLES).map(|i| format!("{:.5},{:.2}\n", i as f64 * 1.0002e-6, volt(i))).collect();
+    fs::write(&path, format!("Sample Interval,1.0002e-06\nTIME,CH1\n{rows}")).unwrap();
     let records = all(&path, &ReadOptions::default());
-    assert_eq!(
-        (records[0].interval_s, records[0].interval_error_s),
-        (1.0002e-6, 0.0)
-    );
+    assert_eq!((records[0].interval_s, records[0].interval_error_s), (1.0002e-6, 0.0));
 }

@@ -65,11 +65,7 @@ fn times_are_taken_for_times_in_every_format_and_with_any_header() {
         let record = only(&folder.join(name));
         assert_eq!(record.channels.len(), 1, "{name}");
         // What single precision and four digits leave of it.
-        assert!(
-            (record.interval_s - 2e-6).abs() < 2e-12,
-            "{name}: {:e}",
-            record.interval_s
-        );
+        assert!((record.interval_s - 2e-6).abs() < 2e-12, "{name}: {:e}", record.interval_s);
         let volts = record.channels[0].volts.clone();
         assert_eq!(volts.len(), 800, "{name}");
         for (i, volt) in volts.iter().enumerate() {

@@ -12,9 +12,8 @@ fn put(path: &Path, content: &[u8]) {
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -67,9 +66,7 @@ fn files_of_a_run_appear_together_or_not_at_all() {
     let folder = folder("together");
     put(&folder.join("tof.csv"), b"old");
     let mut files = Files::within(&folder).unwrap();
-    files
-        .write("tof.csv", |file| file.write_all(b"new"))
-        .unwrap();
+    files.write("tof.csv", |file| file.write_all(b"new")).unwrap();
     let full = |_: &mut dyn io::Write| Err(io::Error::from(io::ErrorKind::StorageFull));
     assert!(files.write("fit.png", full).is_err());
     drop(files);

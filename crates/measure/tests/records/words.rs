@@ -57,10 +57,7 @@ fn words_among_the_numbers_and_rows_that_stop_refuse_the_record() {
         assert_eq!(whole.count(), 0, "{broken:?}: {found:?}");
     }
     // Pages of words are no footer.
-    let found = results(
-        &text("pages", &"words\n".repeat(20)),
-        &ReadOptions::default(),
-    );
+    let found = results(&text("pages", &"words\n".repeat(20)), &ReadOptions::default());
     assert!(found.iter().any(Result::is_err), "{found:?}");
 }
 
@@ -85,13 +82,9 @@ type Row = fn(f64, usize) -> String;
 
 const STAMPS: [(&str, char, Row); 4] = [
     ("iso", ',', |s, v| format!("2024-05-01 12:00:{s:09.6},{v}")),
-    ("zone", ',', |s, v| {
-        format!("2024-05-01T23:59:{s:09.6}Z,{v}")
-    }),
+    ("zone", ',', |s, v| format!("2024-05-01T23:59:{s:09.6}Z,{v}")),
     ("clock", ';', |s, v| format!("12:00:{s:09.6};{v}")),
-    ("comma", ';', |s, v| {
-        format!("12:00:{s:09.6};0.{v}").replace('.', ",")
-    }),
+    ("comma", ';', |s, v| format!("12:00:{s:09.6};0.{v}").replace('.', ",")),
 ];
 
 #[test]
@@ -149,14 +142,8 @@ fn value(column: usize, row: usize) -> f64 {
 
 #[test]
 fn many_columns_are_shots_and_few_only_if_told() {
-    let rate = ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    };
-    let reported = ReadOptions {
-        rows: Rows::Moments,
-        ..rate.clone()
-    };
+    let rate = ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() };
+    let reported = ReadOptions { rows: Rows::Moments, ..rate.clone() };
     for fortran in [false, true] {
         let path = npy("moments", (SAMPLES, 20), fortran);
         for options in [&rate, &reported] {
@@ -170,10 +157,7 @@ fn many_columns_are_shots_and_few_only_if_told() {
                 assert_eq!(noted, options.rows == Rows::Auto, "{:?}", record.notes);
             }
         }
-        let third = ReadOptions {
-            channels: vec!["3".to_owned()],
-            ..rate.clone()
-        };
+        let third = ReadOptions { channels: vec!["3".to_owned()], ..rate.clone() };
         let found = results(&path, &third);
         assert_eq!(found.len(), 1);
         let volts = found[0].as_ref().unwrap().channels[0].volts.clone();

@@ -28,10 +28,7 @@ fn recorded(low_pass: Bandwidth) -> Vec<f64> {
 }
 
 fn times_s(samples: &[f64], bandwidth: Option<Bandwidth>) -> [f64; 2] {
-    let measuring = SignalOptions {
-        bandwidth,
-        ..SignalOptions::default()
-    };
+    let measuring = SignalOptions { bandwidth, ..SignalOptions::default() };
     let shot = measure(Channels::Summed(samples), 1e-6, &measuring).unwrap();
     let flight = shot.flight.unwrap();
     [flight.incident_s.value, flight.reflected_s.unwrap().value]
@@ -42,10 +39,7 @@ fn a_low_pass_is_taken_out_of_maxima_where_its_corner_is_given() {
     let [passing, wall, back] = Dry::MAXIMA_S;
     let true_s = [wall - passing, back - wall];
     for order in [1, 2] {
-        let low_pass = Bandwidth {
-            corner_hz: 50e3,
-            order,
-        };
+        let low_pass = Bandwidth { corner_hz: 50e3, order };
         let samples = recorded(low_pass);
         let off = |bandwidth| {
             let times_s = times_s(&samples, bandwidth);
@@ -60,15 +54,9 @@ fn a_low_pass_is_taken_out_of_maxima_where_its_corner_is_given() {
 
 #[test]
 fn a_low_pass_of_another_order_is_refused() {
-    let samples = recorded(Bandwidth {
-        corner_hz: 50e3,
-        order: 1,
-    });
+    let samples = recorded(Bandwidth { corner_hz: 50e3, order: 1 });
     let measuring = SignalOptions {
-        bandwidth: Some(Bandwidth {
-            corner_hz: 50e3,
-            order: 3,
-        }),
+        bandwidth: Some(Bandwidth { corner_hz: 50e3, order: 3 }),
         ..SignalOptions::default()
     };
     let shot = measure(Channels::Summed(&samples), 1e-6, &measuring).unwrap();

@@ -34,9 +34,7 @@ fn bells() -> Source {
 
 fn dry() -> Source {
     let dry = Dry::load();
-    let highest = (900..950)
-        .map(|us| dry.summed(f64::from(us) * 1e-6))
-        .fold(0.0, f64::max);
+    let highest = (900..950).map(|us| dry.summed(f64::from(us) * 1e-6)).fold(0.0, f64::max);
     Source {
         maxima_s: Dry::MAXIMA_S.map(|time_s| time_s + 500e-6),
         highest,
@@ -57,10 +55,7 @@ impl Source {
 }
 
 fn measured(samples: &[f64], method: &Method) -> Measured {
-    let by = SignalOptions {
-        method: method.clone(),
-        ..SignalOptions::default()
-    };
+    let by = SignalOptions { method: method.clone(), ..SignalOptions::default() };
     measure(Channels::Summed(samples), 1e-6, &by).unwrap()
 }
 
@@ -72,11 +67,7 @@ fn pulls(source: &Source, share: f64, noise: f64) -> Vec<(f64, f64)> {
     let pull = |_| {
         let (_, samples) = source.recorded(noise, share * source.highest, &mut rng);
         let shot = measured(&samples, &Method::default());
-        assert!(
-            shot.found
-                .flags
-                .contains(&QualityFlag::Saturation(PulseKind::Wall))
-        );
+        assert!(shot.found.flags.contains(&QualityFlag::Saturation(PulseKind::Wall)));
         let Estimate { value, sigma } = shot.flight.ok()?.incident_s;
         Some(((value - true_s) / sigma, 1e9 * sigma))
     };
@@ -131,10 +122,7 @@ fn clipped_before_noise(
             *volts = amplifier(*volts, share * source.highest) + noise * normal(&mut rng);
         }
         let shot = measured(&samples, &Method::default());
-        let saturated = shot
-            .found
-            .flags
-            .contains(&QualityFlag::Saturation(PulseKind::Wall));
+        let saturated = shot.found.flags.contains(&QualityFlag::Saturation(PulseKind::Wall));
         flagged += usize::from(saturated);
         let inside = |t: Estimate| (t.value - true_s).abs() < 1.96 * t.sigma;
         within += usize::from(shot.flight.is_ok_and(|flight| inside(flight.incident_s)));
@@ -149,10 +137,7 @@ fn tops_that_an_amplifier_clipped_before_the_digitiser_are_seen_in_its_noise() {
             for noise in [1e-3, 1e-2] {
                 let hard = clipped_before_noise(&source, HARD, share, noise);
                 // Three binomial errors below 95 %, and one in ten unseen in most noise.
-                assert!(
-                    hard[0] >= 20 && hard[1] >= 22,
-                    "{name} {share} {noise}: {hard:?}"
-                );
+                assert!(hard[0] >= 20 && hard[1] >= 22, "{name} {share} {noise}: {hard:?}");
                 // Rounded corners are no bell's: 80 % are covered.
                 let soft = clipped_before_noise(&source, SOFT, share, noise);
                 assert!(soft[0] >= 17, "soft {name} {share} {noise}: {soft:?}");
@@ -169,9 +154,7 @@ fn whole_tops_are_not_taken_for_clipped_ones() {
             for _ in 0..20 {
                 let (_, samples) = source.recorded(noise, f64::INFINITY, &mut rng);
                 let doubts = measured(&samples, &Method::default()).found.flags;
-                let saturated = doubts
-                    .iter()
-                    .any(|d| matches!(d, QualityFlag::Saturation(_)));
+                let saturated = doubts.iter().any(|d| matches!(d, QualityFlag::Saturation(_)));
                 assert!(!saturated, "{noise}: {doubts:?}");
             }
         }
@@ -184,34 +167,19 @@ fn other_methods_use_the_flanks_or_say_why_they_cannot() {
     let source = bells();
     let (_, samples) = source.recorded(1e-3, 1.0, &mut rng);
     let true_s = source.maxima_s[1] - source.maxima_s[0];
-    let shape = Method::MatchedShape {
-        shape: Shape::cos_power(6.0),
-        width: 2.0,
-    };
+    let shape = Method::MatchedShape { shape: Shape::cos_power(6.0), width: 2.0 };
     let by_shape = measured(&samples, &shape).flight.unwrap().incident_s;
-    assert!(
-        (by_shape.value - true_s).abs() < 3.0 * by_shape.sigma,
-        "{by_shape:?}"
-    );
+    assert!((by_shape.value - true_s).abs() < 3.0 * by_shape.sigma, "{by_shape:?}");
     let onset = |fraction| measured(&samples, &Method::Onset { fraction }).flight;
     let rise = onset(0.3).unwrap().incident_s;
     // Half the difference of both widths at 0.3 of their heights: 1.32 times that at half.
     let expected_s = true_s + 0.5 * 1.32 * 8e-6;
-    assert!(
-        (rise.value - expected_s).abs() < 0.2e-6,
-        "{rise:?} {expected_s:e}"
-    );
+    assert!((rise.value - expected_s).abs() < 0.2e-6, "{rise:?} {expected_s:e}");
     let reported = onset(0.8).unwrap_err().to_string();
     assert!(reported.contains("clipped"), "{reported}");
     let correlation = Method::CrossCorrelation;
-    let reported = measured(&samples, &correlation)
-        .flight
-        .unwrap_err()
-        .to_string();
-    assert!(
-        reported.contains("wall") && reported.contains("clipped"),
-        "{reported}"
-    );
+    let reported = measured(&samples, &correlation).flight.unwrap_err().to_string();
+    assert!(reported.contains("wall") && reported.contains("clipped"), "{reported}");
 }
 
 #[test]
@@ -219,22 +187,14 @@ fn tops_with_wide_rounded_corners_are_seen() {
     // Powers of 8: a tenth of the voltage is missing where the amplifier's end is at 90 %.
     let knee = |volt: f64, end: f64| volt / (1.0 + (volt / end).max(0.0).powi(8)).powf(0.125);
     for (share, noise) in [(0.95, 0.001), (0.9, 0.001), (0.75, 0.01), (0.6, 0.01)] {
-        let scene = Scene {
-            noise: 0.0,
-            ..Scene::default()
-        };
+        let scene = Scene { noise: 0.0, ..Scene::default() };
         let end = share * 1.6;
         let mut rng = ChaCha8Rng::seed_from_u64(11);
         let samples = scene.summed();
-        let samples: Vec<f64> = samples
-            .iter()
-            .map(|volt| knee(*volt, end) + noise * normal(&mut rng))
-            .collect();
+        let samples: Vec<f64> =
+            samples.iter().map(|volt| knee(*volt, end) + noise * normal(&mut rng)).collect();
         let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
-        let seen = shot
-            .found
-            .flags
-            .contains(&QualityFlag::Saturation(PulseKind::Wall));
+        let seen = shot.found.flags.contains(&QualityFlag::Saturation(PulseKind::Wall));
         assert!(seen, "{share} {noise}: {:?}", shot.found.flags);
     }
 }

@@ -107,43 +107,25 @@ fn a_rival_told_to_be_the_higher_is_the_return() {
     // By all evidence there is no doubt any more.
     assert!(other.reflected_s.unwrap().sigma < flight.reflected_s.unwrap().sigma);
     let back = other.with_height_difference(PulseKind::Reflected, lower);
-    assert_eq!(
-        back.reflected_s.unwrap().value,
-        flight.reflected_s.unwrap().value
-    );
+    assert_eq!(back.reflected_s.unwrap().value, flight.reflected_s.unwrap().value);
 }
 
 /// At many samples a width, and in steps of a digitiser, noise makes many maxima on one top.
 #[test]
 fn maxima_on_one_top_are_no_fragments_of_it() {
-    let scene = Scene {
-        interval_s: 1e-7,
-        samples: 40_000,
-        noise: 3e-3,
-        ..Scene::default()
-    };
+    let scene = Scene { interval_s: 1e-7, samples: 40_000, noise: 3e-3, ..Scene::default() };
     let step = 4.0 / 256.0;
     for seed in 0..8 {
-        let clean = Scene {
-            seed,
-            ..scene.clone()
-        }
-        .summed();
+        let clean = Scene { seed, ..scene.clone() }.summed();
         let steps: Vec<f64> = clean.iter().map(|x| (x / step).round() * step).collect();
         // Differences of neighbours: noise that falls off towards low frequencies.
-        let blue: Vec<f64> = clean
-            .windows(2)
-            .map(|pair| 2.0 * pair[1] - pair[0])
-            .collect();
+        let blue: Vec<f64> = clean.windows(2).map(|pair| 2.0 * pair[1] - pair[0]).collect();
         for samples in [steps, blue] {
             let shot =
                 measure(Channels::Summed(&samples), 1e-7, &SignalOptions::default()).unwrap();
             let doubts = shot.found.flags;
             let alike = doubts.iter().any(|d| {
-                matches!(
-                    d,
-                    QualityFlag::AmbiguousMaximum(_) | QualityFlag::Saturation(_)
-                )
+                matches!(d, QualityFlag::AmbiguousMaximum(_) | QualityFlag::Saturation(_))
             });
             assert!(!alike, "{seed}: {doubts:?}");
         }

@@ -23,10 +23,7 @@ fn shot(into_bead: f64, into_wall: f64, back: f64, noise: f64, seed: u64) -> Mea
         sensor.push(bead + into_bead * at_wall + noise * normal(&mut rng));
         wall.push(at_wall + into_wall * bead + noise * normal(&mut rng));
     }
-    let channels = Channels::Separate {
-        sensor: &sensor,
-        wall: &wall,
-    };
+    let channels = Channels::Separate { sensor: &sensor, wall: &wall };
     let measuring = SignalOptions {
         find: FindOptions {
             beads: seed.is_multiple_of(2).then_some((40, 7)),
@@ -54,15 +51,8 @@ fn crosstalk_of_the_wall_is_no_return() {
                 (reflected.value - (back - wall)) / reflected.sigma,
             ];
             // Of 200 pulls: five deviations.
-            assert!(
-                off.iter().all(|off| off.abs() < 5.0),
-                "{into_bead}, {seed}: {off:?}"
-            );
-            assert!(
-                !is_grave(&measured),
-                "{into_bead}, {seed}: {:?}",
-                measured.found.flags
-            );
+            assert!(off.iter().all(|off| off.abs() < 5.0), "{into_bead}, {seed}: {off:?}");
+            assert!(!is_grave(&measured), "{into_bead}, {seed}: {:?}", measured.found.flags);
         }
     }
 }
@@ -84,9 +74,6 @@ fn without_a_return_crosstalk_gives_no_reflected_time_that_counts() {
 fn a_wall_channel_that_shows_the_bead_more_than_the_wall_is_of_doubtful_order() {
     for seed in 0..10 {
         let measured = shot(0.0, 2.5, 1.0, 3e-3, seed);
-        assert!(
-            measured.flight.is_err() || is_grave(&measured),
-            "{measured:?}"
-        );
+        assert!(measured.flight.is_err() || is_grave(&measured), "{measured:?}");
     }
 }

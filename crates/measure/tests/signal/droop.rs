@@ -32,16 +32,10 @@ fn the_inverse_gives_back_what_the_high_pass_took() {
 
 #[test]
 fn times_of_flight_are_put_right_when_the_time_constant_is_given() {
-    let scene = Scene {
-        noise: 1e-6,
-        ..Scene::default()
-    };
+    let scene = Scene { noise: 1e-6, ..Scene::default() };
     let samples = drooped(&scene.summed(), 1e-6, 2e-3);
     let off = |high_pass_s| {
-        let measuring = SignalOptions {
-            high_pass_s,
-            ..SignalOptions::default()
-        };
+        let measuring = SignalOptions { high_pass_s, ..SignalOptions::default() };
         let shot = measure(Channels::Summed(&samples), 1e-6, &measuring).unwrap();
         shot.flight.unwrap().incident_s.value - scene.incident_s()
     };

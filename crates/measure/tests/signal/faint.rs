@@ -14,10 +14,7 @@ const SHOTS: u64 = 400;
 fn errors(source: &Source, method: &Method, interval_s: f64, ratio_db: f64) -> [Vec<Estimate>; 2] {
     let mut rng = ChaCha8Rng::seed_from_u64(2026);
     let noise = 10_f64.powf(-ratio_db / 20.0);
-    let measuring = SignalOptions {
-        method: method.clone(),
-        ..SignalOptions::default()
-    };
+    let measuring = SignalOptions { method: method.clone(), ..SignalOptions::default() };
     let [passing, wall, returning] = source.times_s;
     let mut errors = [const { Vec::new() }; 2];
     for _ in 0..SHOTS {
@@ -27,10 +24,7 @@ fn errors(source: &Source, method: &Method, interval_s: f64, ratio_db: f64) -> [
         let Some(flight) = shot.flight.ok().filter(|_| counts) else {
             continue;
         };
-        let off = |found: Estimate, true_s: f64| Estimate {
-            value: found.value - true_s,
-            ..found
-        };
+        let off = |found: Estimate, true_s: f64| Estimate { value: found.value - true_s, ..found };
         errors[0].push(off(flight.incident_s, wall - passing));
         errors[1].extend(flight.reflected_s.map(|t| off(t, returning - wall)));
     }

@@ -1,9 +1,5 @@
 //! Pulses are found whatever the offset, polarity and noise, and doubts are raised where due.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::common::{Scene, channels};
 use hertzchain_measure::MeasureError;
@@ -18,9 +14,8 @@ fn find(samples: &[f64]) -> Found {
 
 /// Every pulse within `widths` of its width of where it is.
 fn assert_found(scene: &Scene, found: &Found, widths: f64) {
-    for (pulse, (at, _, width)) in [found.incident, found.wall, found.reflected]
-        .into_iter()
-        .zip(scene.pulses)
+    for (pulse, (at, _, width)) in
+        [found.incident, found.wall, found.reflected].into_iter().zip(scene.pulses)
     {
         let pulse = pulse.unwrap_or_else(|| panic!("{found:?}"));
         let off = (pulse.at as f64 * scene.interval_s - at).abs();
@@ -31,12 +26,7 @@ fn assert_found(scene: &Scene, found: &Found, widths: f64) {
 #[test]
 fn clean_pulses_are_found_to_a_sample_and_without_doubt() {
     for (offset, sign, samples) in [(0.0, 1.0, 4000), (-7.5, -1.0, 4000), (1e3, 1.0, 100_000)] {
-        let scene = Scene {
-            offset,
-            sign,
-            samples,
-            ..Scene::default()
-        };
+        let scene = Scene { offset, sign, samples, ..Scene::default() };
         let found = find(&scene.summed());
         // Half a sample, and rounding of equal neighbours.
         assert_found(&scene, &found, 0.02);
@@ -80,11 +70,7 @@ fn pulses_are_found_at_20_db() {
             let found = pulses(channels(&pair), &FindOptions::default()).unwrap();
             assert_found(&scene, &found, 0.4);
             // The reflected pulse is 13 dB above the noise, and said to be low.
-            assert!(
-                found
-                    .flags
-                    .contains(&QualityFlag::LowSignal(PulseKind::Reflected))
-            );
+            assert!(found.flags.contains(&QualityFlag::LowSignal(PulseKind::Reflected)));
         }
     }
 }
@@ -98,11 +84,7 @@ fn narrow_pulses_are_found_at_20_db_in_long_records() {
             noise: 0.1,
             seed,
             // The fastest shots: 17 samples across half the maximum.
-            pulses: [
-                (800e-6, 1.0, 35e-6),
-                (1450e-6, 1.6, 32e-6),
-                (2150e-6, 0.47, 38e-6),
-            ],
+            pulses: [(800e-6, 1.0, 35e-6), (1450e-6, 1.6, 32e-6), (2150e-6, 0.47, 38e-6)],
             ..Scene::default()
         };
         let found = find(&scene.summed());
@@ -117,10 +99,7 @@ fn narrow_pulses_are_found_at_20_db_in_long_records() {
 
 #[test]
 fn a_spike_before_the_first_pulse_is_passed_over() {
-    let scene = Scene {
-        noise: 1e-3,
-        ..Scene::default()
-    };
+    let scene = Scene { noise: 1e-3, ..Scene::default() };
     for sign in [1.0, -1.0] {
         let mut samples = scene.summed();
         samples[300] += 3.0 * sign;
@@ -133,11 +112,7 @@ fn a_spike_before_the_first_pulse_is_passed_over() {
 #[test]
 fn a_short_lead_is_doubted_but_the_pulses_are_found() {
     let scene = Scene {
-        pulses: [
-            (70e-6, 1.0, 60e-6),
-            (770e-6, 1.6, 52e-6),
-            (1550e-6, 0.45, 66e-6),
-        ],
+        pulses: [(70e-6, 1.0, 60e-6), (770e-6, 1.6, 52e-6), (1550e-6, 0.45, 66e-6)],
         noise: 0.01,
         samples: 3000,
         ..Scene::default()
@@ -149,18 +124,12 @@ fn a_short_lead_is_doubted_but_the_pulses_are_found() {
 
 #[test]
 fn saturation_is_seen_with_and_without_known_rails() {
-    let scene = Scene {
-        noise: 1e-3,
-        ..Scene::default()
-    };
+    let scene = Scene { noise: 1e-3, ..Scene::default() };
     let clipped: Vec<f64> = scene.summed().iter().map(|x| x.min(1.2)).collect();
     let found = find(&clipped);
     assert_eq!(found.flags, [QualityFlag::Saturation(PulseKind::Wall)]);
     let finding = FindOptions {
-        range: Some(DigitiserRange {
-            low: -1.2,
-            high: 1.2,
-        }),
+        range: Some(DigitiserRange { low: -1.2, high: 1.2 }),
         ..FindOptions::default()
     };
     let found = pulses(Channels::Summed(&clipped), &finding).unwrap();
@@ -192,135 +161,71 @@ fn each_channel_is_held_against_its_own_rails() {
 #[test]
 fn a_coarse_digitiser_does_not_look_saturated() {
     // 200 steps to the top of the wall's pulse.
-    let samples: Vec<f64> = Scene::default()
-        .summed()
-        .iter()
-        .map(|x| (x * 125.0).round())
-        .collect();
+    let samples: Vec<f64> = Scene::default().summed().iter().map(|x| (x * 125.0).round()).collect();
     assert_eq!(find(&samples).flags, []);
 }
 
 #[test]
 fn missing_pulses_are_named() {
-    let mut scene = Scene {
-        noise: 1e-3,
-        ..Scene::default()
-    };
+    let mut scene = Scene { noise: 1e-3, ..Scene::default() };
     scene.pulses[2].1 = 0.0;
     let found = of_row(&scene);
     assert_eq!(found.flags, [QualityFlag::Missing(PulseKind::Reflected)]);
     scene.pulses[1].1 = 0.0;
     let found = find(&scene.summed());
-    let both = [
-        QualityFlag::Missing(PulseKind::Wall),
-        QualityFlag::Missing(PulseKind::Reflected),
-    ];
+    let both = [QualityFlag::Missing(PulseKind::Wall), QualityFlag::Missing(PulseKind::Reflected)];
     assert_eq!(found.flags, both);
 }
 
 /// With the paper's row known.
 fn of_row(scene: &Scene) -> Found {
-    let finding = FindOptions {
-        beads: Some((40, 7)),
-        ..FindOptions::default()
-    };
+    let finding = FindOptions { beads: Some((40, 7)), ..FindOptions::default() };
     pulses(Channels::Summed(&scene.summed()), &finding).unwrap()
 }
 
 #[test]
 fn a_lost_passing_pulse_is_named_where_the_row_is_known_and_doubted_where_not() {
     for samples in [2700, 4000] {
-        let mut scene = Scene {
-            noise: 1e-3,
-            samples,
-            ..Scene::default()
-        };
+        let mut scene = Scene { noise: 1e-3, samples, ..Scene::default() };
         scene.pulses[0].1 = 0.0;
         let found = of_row(&scene);
-        assert!(
-            found
-                .flags
-                .contains(&QualityFlag::Missing(PulseKind::Incident))
-        );
+        assert!(found.flags.contains(&QualityFlag::Missing(PulseKind::Incident)));
         assert!(found.incident.is_none());
         let at = [found.wall, found.reflected].map(|pulse| pulse.unwrap().at.abs_diff(0));
-        assert!(
-            at[0].abs_diff(1500) < 3 && at[1].abs_diff(2281) < 3,
-            "{at:?}"
-        );
+        assert!(at[0].abs_diff(1500) < 3 && at[1].abs_diff(2281) < 3, "{at:?}");
         let found = find(&scene.summed());
-        assert!(
-            found.flags.contains(&QualityFlag::Unidentified),
-            "{:?}",
-            found.flags
-        );
+        assert!(found.flags.contains(&QualityFlag::Unidentified), "{:?}", found.flags);
     }
 }
 
 #[test]
 fn a_return_much_lower_than_the_first_pulse_is_still_found() {
     for height in [0.45, 0.3, 0.1] {
-        let mut scene = Scene {
-            noise: 1e-3,
-            ..Scene::default()
-        };
+        let mut scene = Scene { noise: 1e-3, ..Scene::default() };
         scene.pulses[0].1 = 0.0;
         scene.pulses[2].1 = height;
         let found = of_row(&scene);
-        assert!(
-            found
-                .flags
-                .contains(&QualityFlag::Missing(PulseKind::Incident)),
-            "{height}"
-        );
+        assert!(found.flags.contains(&QualityFlag::Missing(PulseKind::Incident)), "{height}");
     }
 }
 
 #[test]
 fn a_lost_pulse_of_the_wall_is_told_from_a_lost_passing_one() {
-    let mut scene = Scene {
-        noise: 1e-3,
-        samples: 6000,
-        ..Scene::default()
-    };
+    let mut scene = Scene { noise: 1e-3, samples: 6000, ..Scene::default() };
     // 16.2 widths to the wall, as in a row of Hertz beads.
-    scene.pulses = [
-        (800e-6, 1.0, 45e-6),
-        (0.0, 0.0, 1.0),
-        (2300e-6, 0.35, 50e-6),
-    ];
+    scene.pulses = [(800e-6, 1.0, 45e-6), (0.0, 0.0, 1.0), (2300e-6, 0.35, 50e-6)];
     let found = of_row(&scene);
-    assert!(
-        found.flags.contains(&QualityFlag::Missing(PulseKind::Wall)),
-        "{:?}",
-        found.flags
-    );
-    assert!(
-        find(&scene.summed())
-            .flags
-            .contains(&QualityFlag::Unidentified)
-    );
+    assert!(found.flags.contains(&QualityFlag::Missing(PulseKind::Wall)), "{:?}", found.flags);
+    assert!(find(&scene.summed()).flags.contains(&QualityFlag::Unidentified));
 }
 
 #[test]
 fn a_lost_passing_pulse_is_doubted_though_a_later_one_is_taken_for_the_return() {
-    let mut scene = Scene {
-        noise: 1e-3,
-        samples: 5000,
-        ..Scene::default()
-    };
+    let mut scene = Scene { noise: 1e-3, samples: 5000, ..Scene::default() };
     // The wall's, the return, and the wall's again after 47 beads for 33.
-    scene.pulses = [
-        (800e-6, 1.6, 40e-6),
-        (1570e-6, 0.47, 50e-6),
-        (2680e-6, 0.4, 55e-6),
-    ];
+    scene.pulses = [(800e-6, 1.6, 40e-6), (1570e-6, 0.47, 50e-6), (2680e-6, 0.4, 55e-6)];
     for found in [find(&scene.summed()), of_row(&scene)] {
-        assert!(
-            found.flags.contains(&QualityFlag::Order),
-            "{:?}",
-            found.flags
-        );
+        assert!(found.flags.contains(&QualityFlag::Order), "{:?}", found.flags);
     }
     // Without the low second pulse, the ways' times alone determine in a known row.
     scene.pulses[1].1 = 1.2;
@@ -329,12 +234,7 @@ fn a_lost_passing_pulse_is_doubted_though_a_later_one_is_taken_for_the_return() 
 
 #[test]
 fn pulses_of_few_samples_are_doubted() {
-    let scene = Scene {
-        interval_s: 14e-6,
-        samples: 300,
-        noise: 1e-3,
-        ..Scene::default()
-    };
+    let scene = Scene { interval_s: 14e-6, samples: 300, noise: 1e-3, ..Scene::default() };
     let doubts = find(&scene.summed()).flags;
     let few = |doubt: &QualityFlag| matches!(doubt, QualityFlag::FewSamples(_));
     assert!(doubts.iter().any(few), "{doubts:?}");
@@ -342,10 +242,7 @@ fn pulses_of_few_samples_are_doubted() {
 
 #[test]
 fn two_pulses_without_a_third_are_no_shot_unless_the_record_ends_before_it() {
-    let mut scene = Scene {
-        noise: 1e-3,
-        ..Scene::default()
-    };
+    let mut scene = Scene { noise: 1e-3, ..Scene::default() };
     scene.pulses[2].1 = 0.0;
     assert_eq!(find(&scene.summed()).flags, [QualityFlag::Unidentified]);
     scene.samples = 2000;
@@ -355,18 +252,10 @@ fn two_pulses_without_a_third_are_no_shot_unless_the_record_ends_before_it() {
 
 #[test]
 fn a_record_that_ends_early_is_too_short() {
-    let scene = Scene {
-        samples: 2000,
-        noise: 1e-3,
-        ..Scene::default()
-    };
+    let scene = Scene { samples: 2000, noise: 1e-3, ..Scene::default() };
     let found = find(&scene.summed());
     assert!(found.flags.contains(&QualityFlag::RecordTooShort));
-    assert!(
-        found
-            .flags
-            .contains(&QualityFlag::Missing(PulseKind::Reflected))
-    );
+    assert!(found.flags.contains(&QualityFlag::Missing(PulseKind::Reflected)));
 }
 
 #[test]
@@ -376,52 +265,29 @@ fn a_fragment_beside_a_pulse_splits_it() {
         pulses: [(2.44e-3, 0.2, 60e-6), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0)],
         ..Scene::default()
     };
-    let both: Vec<f64> = scene
-        .summed()
-        .iter()
-        .zip(fragment.summed())
-        .map(|(a, b)| a + b)
-        .collect();
-    assert_eq!(
-        find(&both).flags,
-        [QualityFlag::Split(PulseKind::Reflected)]
-    );
+    let both: Vec<f64> = scene.summed().iter().zip(fragment.summed()).map(|(a, b)| a + b).collect();
+    assert_eq!(find(&both).flags, [QualityFlag::Split(PulseKind::Reflected)]);
 }
 
 #[test]
 fn pulses_that_run_into_each_other_overlap() {
     let scene = Scene {
-        pulses: [
-            (800e-6, 1.0, 100e-6),
-            (950e-6, 1.6, 100e-6),
-            (1120e-6, 0.9, 100e-6),
-        ],
+        pulses: [(800e-6, 1.0, 100e-6), (950e-6, 1.6, 100e-6), (1120e-6, 0.9, 100e-6)],
         ..Scene::default()
     };
     let found = find(&scene.summed());
-    assert!(
-        found
-            .flags
-            .contains(&QualityFlag::Overlap(PulseKind::Incident, PulseKind::Wall))
-    );
+    assert!(found.flags.contains(&QualityFlag::Overlap(PulseKind::Incident, PulseKind::Wall)));
 }
 
 #[test]
 fn a_weak_pulse_of_the_wall_is_told_from_the_return() {
     // The wall's disc is less sensitive than the bead's: its pulse is the lowest.
     let scene = Scene {
-        pulses: [
-            (800e-6, 1.0, 45e-6),
-            (1520e-6, 0.2, 45e-6),
-            (2260e-6, 0.5, 45e-6),
-        ],
+        pulses: [(800e-6, 1.0, 45e-6), (1520e-6, 0.2, 45e-6), (2260e-6, 0.5, 45e-6)],
         noise: 1e-3,
         ..Scene::default()
     };
-    let finding = FindOptions {
-        beads: Some((40, 7)),
-        ..FindOptions::default()
-    };
+    let finding = FindOptions { beads: Some((40, 7)), ..FindOptions::default() };
     let found = pulses(Channels::Summed(&scene.summed()), &finding).unwrap();
     assert_found(&scene, &found, 0.1);
     assert!(found.flags.contains(&QualityFlag::Order));
@@ -435,23 +301,13 @@ fn a_weak_pulse_of_the_wall_is_told_from_the_return() {
 
 #[test]
 fn a_stated_polarity_is_obeyed() {
-    let scene = Scene {
-        sign: -1.0,
-        noise: 0.01,
-        ..Scene::default()
-    };
-    let finding = |polarity| FindOptions {
-        polarity,
-        ..FindOptions::default()
-    };
+    let scene = Scene { sign: -1.0, noise: 0.01, ..Scene::default() };
+    let finding = |polarity| FindOptions { polarity, ..FindOptions::default() };
     let samples = scene.summed();
     let found = pulses(Channels::Summed(&samples), &finding(Polarity::Negative)).unwrap();
     assert_found(&scene, &found, 0.1);
     let wrong = pulses(Channels::Summed(&samples), &finding(Polarity::Positive));
-    assert!(
-        matches!(wrong, Err(MeasureError::NoPulse { .. })),
-        "{wrong:?}"
-    );
+    assert!(matches!(wrong, Err(MeasureError::NoPulse { .. })), "{wrong:?}");
 }
 
 #[test]
@@ -465,10 +321,7 @@ fn noise_alone_is_no_pulse() {
             ..Scene::default()
         };
         let found = pulses(Channels::Summed(&scene.summed()), &FindOptions::default());
-        assert!(
-            matches!(found, Err(MeasureError::NoPulse { .. })),
-            "{found:?}"
-        );
+        assert!(matches!(found, Err(MeasureError::NoPulse { .. })), "{found:?}");
     }
 }
 
@@ -484,10 +337,7 @@ fn records_that_hold_nothing_say_why() {
     let pair = (vec![0.0; 100], vec![0.0; 99]);
     let lengths = pulses(channels(&pair), &FindOptions::default());
     assert!(matches!(lengths, Err(MeasureError::Lengths { .. })));
-    let finding = FindOptions {
-        beads: Some((7, 7)),
-        ..FindOptions::default()
-    };
+    let finding = FindOptions { beads: Some((7, 7)), ..FindOptions::default() };
     let beads = pulses(Channels::Summed(&Scene::default().summed()), &finding);
     assert!(matches!(beads, Err(MeasureError::Option(..))));
 }

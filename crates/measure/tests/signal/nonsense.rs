@@ -25,31 +25,19 @@ fn methods() -> Vec<Method> {
         Method::default(),
         Method::Onset { fraction: 0.1 },
         Method::CrossCorrelation,
-        Method::MatchedShape {
-            shape: Shape::cos_power(6.0),
-            width: 2.0,
-        },
+        Method::MatchedShape { shape: Shape::cos_power(6.0), width: 2.0 },
     ]
 }
 
 fn measure_all(samples: &[f64], wall: &[f64], interval_s: f64) {
     for method in methods() {
-        for channels in [
-            Channels::Summed(samples),
-            Channels::Separate {
-                sensor: samples,
-                wall,
-            },
-        ] {
+        for channels in [Channels::Summed(samples), Channels::Separate { sensor: samples, wall }] {
             for beads in [None, Some((40, 7))] {
                 let find = FindOptions {
                     beads,
                     polarity: Polarity::Auto,
                     wall_polarity: Polarity::Negative,
-                    range: Some(DigitiserRange {
-                        low: -1.0,
-                        high: 1.0,
-                    }),
+                    range: Some(DigitiserRange { low: -1.0, high: 1.0 }),
                     limits: hertzchain_measure::signal::PulseLimits::default(),
                     wall_range: None,
                 };

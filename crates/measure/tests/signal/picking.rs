@@ -1,9 +1,5 @@
 //! Picked times: unbiased where they should be, and as uncertain as they say.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 use crate::common::{Scene, channels, normal};
 use crate::dry::Dry;
@@ -20,24 +16,17 @@ fn bell() -> Shape {
 }
 
 fn matched() -> Method {
-    Method::MatchedShape {
-        shape: bell(),
-        width: 2.0,
-    }
+    Method::MatchedShape { shape: bell(), width: 2.0 }
 }
 
 fn by(method: &Method) -> SignalOptions {
-    SignalOptions {
-        method: method.clone(),
-        ..SignalOptions::default()
-    }
+    SignalOptions { method: method.clone(), ..SignalOptions::default() }
 }
 
 fn flight(scene: &Scene, method: &Method) -> Flight {
     let samples = scene.summed();
     let shot = measure(Channels::Summed(&samples), scene.interval_s, &by(method)).unwrap();
-    shot.flight
-        .unwrap_or_else(|error| panic!("{method:?}: {error}"))
+    shot.flight.unwrap_or_else(|error| panic!("{method:?}: {error}"))
 }
 
 /// Scenes whose pulses fall everywhere between samples, from 50 to 200 µs wide.
@@ -45,11 +34,8 @@ fn scenes(interval_s: f64) -> impl Iterator<Item = Scene> {
     (0..24).map(move |k| {
         let shift = 0.137e-6 * f64::from(k);
         let width = (50.0 + 6.5 * f64::from(k)) * 1e-6;
-        let mut scene = Scene {
-            interval_s,
-            samples: (6e-3 / interval_s) as usize,
-            ..Scene::default()
-        };
+        let mut scene =
+            Scene { interval_s, samples: (6e-3 / interval_s) as usize, ..Scene::default() };
         scene.pulses = [
             (1.1e-3 + shift, 1.0, width),
             (2.6e-3 + 2.7 * shift, 1.6, 0.9 * width),
@@ -89,11 +75,7 @@ fn onsets_of_unlike_pulses_differ_by_their_rise_times() {
 
 #[test]
 fn either_polarity_and_two_channels_pick_alike() {
-    let scene = Scene {
-        offset: 2.5,
-        sign: -1.0,
-        ..Scene::default()
-    };
+    let scene = Scene { offset: 2.5, sign: -1.0, ..Scene::default() };
     let pair = scene.separate();
     let shot = measure(channels(&pair), 1e-6, &by(&matched())).unwrap();
     let found = shot.flight.unwrap();
@@ -108,11 +90,7 @@ fn either_polarity_and_two_channels_pick_alike() {
 fn pulls(method: &Method, noise: f64) -> Vec<f64> {
     let mut pulls = Vec::new();
     for seed in 0..500 {
-        let mut scene = Scene {
-            noise,
-            seed,
-            ..Scene::default()
-        };
+        let mut scene = Scene { noise, seed, ..Scene::default() };
         // Alike, so that no method has a bias of shape.
         scene.pulses.iter_mut().for_each(|pulse| pulse.2 = 60e-6);
         let found = flight(&scene, method);
@@ -125,12 +103,8 @@ fn pulls(method: &Method, noise: f64) -> Vec<f64> {
 
 #[test]
 fn stated_errors_cover_what_they_say_at_40_db() {
-    let methods = [
-        matched(),
-        Method::default(),
-        Method::Onset { fraction: 0.5 },
-        Method::CrossCorrelation,
-    ];
+    let methods =
+        [matched(), Method::default(), Method::Onset { fraction: 0.5 }, Method::CrossCorrelation];
     for method in methods {
         let found = coverage(&pulls(&method, 0.01), 1.0).unwrap();
         // Four standard deviations of chance, and a tenth for what is first
@@ -139,10 +113,7 @@ fn stated_errors_cover_what_they_say_at_40_db() {
         let open = if method == Method::Maximum { 0.1 } else { 0.0 };
         let off = found.share - found.expected;
         let chance = 4.0 * found.chance;
-        assert!(
-            (-chance..chance + open).contains(&off),
-            "{method:?} {found:?}"
-        );
+        assert!((-chance..chance + open).contains(&off), "{method:?} {found:?}");
         let scale = 0.9 - open..1.1;
         assert!(scale.contains(&found.scale), "{method:?} {found:?}");
     }
@@ -153,12 +124,7 @@ fn rounding_by_a_digitiser_is_part_of_the_stated_error() {
     let mut pulls = Vec::new();
     for seed in 0..300 {
         // A fifth of a step of noise about the middle of a step: quiet samples are all alike.
-        let mut scene = Scene {
-            noise: 0.001,
-            offset: 0.0004,
-            seed,
-            ..Scene::default()
-        };
+        let mut scene = Scene { noise: 0.001, offset: 0.0004, seed, ..Scene::default() };
         let shift = 1e-9 * seed as f64;
         scene.pulses.iter_mut().for_each(|pulse| pulse.0 += shift);
         let step = 0.005;
@@ -205,9 +171,8 @@ fn coarse_steps_without_noise_are_doubted_and_within_the_stated_error() {
         let (doubts, pulls) = in_steps(steps);
         let doubted = doubts.contains(&QualityFlag::CoarseSteps(PulseKind::Incident));
         assert_eq!(doubted, steps < 32.0, "{steps}");
-        for (pulls, (factor, least)) in pulls
-            .iter()
-            .flat_map(|one| [(1.0, 0.6), (2.0, 0.9)].map(|of| (one, of)))
+        for (pulls, (factor, least)) in
+            pulls.iter().flat_map(|one| [(1.0, 0.6), (2.0, 0.9)].map(|of| (one, of)))
         {
             let found = coverage(pulls, factor).unwrap();
             // Rounding has no normal distribution; where samples change steps, times are well known.
@@ -254,10 +219,7 @@ fn stated_errors_cover_what_skewness_does_at_30_and_at_60_db() {
 
 #[test]
 fn a_fit_of_the_true_shape_reaches_the_cramer_rao_bound() {
-    let scene = Scene {
-        noise: 0.01,
-        ..Scene::default()
-    };
+    let scene = Scene { noise: 0.01, ..Scene::default() };
     let found = flight(&scene, &matched());
     let (_, height, width) = scene.pulses[1];
     // σ ≥ noise/√(Σ s'²), which holds with height, width and offset free as well, as time does not
@@ -276,10 +238,7 @@ fn a_fit_of_the_true_shape_reaches_the_cramer_rao_bound() {
 
 #[test]
 fn the_wall_pulse_is_common_to_both_times_of_flight() {
-    let scene = Scene {
-        noise: 0.01,
-        ..Scene::default()
-    };
+    let scene = Scene { noise: 0.01, ..Scene::default() };
     let found = flight(&scene, &matched());
     assert_eq!(found.covariance_s2, -found.picks.wall.sigma_s.powi(2));
 }
@@ -289,10 +248,7 @@ fn saturated_samples_are_left_out_of_a_fit_of_the_shape() {
     let scene = Scene::default();
     let clipped: Vec<f64> = scene.summed().iter().map(|x| x.min(1.2)).collect();
     let mut measuring = by(&matched());
-    measuring.find.range = Some(DigitiserRange {
-        low: -10.0,
-        high: 1.2,
-    });
+    measuring.find.range = Some(DigitiserRange { low: -10.0, high: 1.2 });
     let shot = measure(Channels::Summed(&clipped), 1e-6, &measuring).unwrap();
     let found = shot.flight.unwrap();
     // What is left of the pulse is still exact: rounding.
@@ -305,16 +261,9 @@ fn filtered_noise_is_known_to_be_correlated() {
     let method = Method::default();
     let mut pulls = Vec::new();
     for seed in 0..300 {
-        let scene = Scene {
-            noise: 0.02,
-            seed,
-            ..Scene::default()
-        };
+        let scene = Scene { noise: 0.02, seed, ..Scene::default() };
         let mut measuring = by(&method);
-        measuring.low_pass = Some(LowPass {
-            cutoff_hz: 150e3,
-            order: 2,
-        });
+        measuring.low_pass = Some(LowPass { cutoff_hz: 150e3, order: 2 });
         let samples = scene.summed();
         let shot = measure(Channels::Summed(&samples), 1e-6, &measuring).unwrap();
         let found = shot.flight.unwrap().incident_s;
@@ -331,10 +280,7 @@ fn methods_out_of_range_are_refused() {
     let bad = [
         Method::Onset { fraction: f64::NAN },
         Method::Onset { fraction: 1.0 },
-        Method::MatchedShape {
-            shape: bell(),
-            width: 0.0,
-        },
+        Method::MatchedShape { shape: bell(), width: 0.0 },
     ];
     for method in bad {
         let shot = measure(Channels::Summed(&samples), 1e-6, &by(&method)).unwrap();
@@ -347,9 +293,7 @@ fn methods_out_of_range_are_refused() {
 /// Incident and reflected error of a method on a computed, skewed shot, in s.
 fn off_on_a_dry_shot(method: &Method, lead_s: f64) -> [f64; 2] {
     let dry = Dry::load();
-    let samples: Vec<f64> = (0..2600)
-        .map(|i| dry.summed(f64::from(i) * 1e-6 - lead_s))
-        .collect();
+    let samples: Vec<f64> = (0..2600).map(|i| dry.summed(f64::from(i) * 1e-6 - lead_s)).collect();
     let shot = measure(Channels::Summed(&samples), 1e-6, &by(method)).unwrap();
     off(&shot.flight.unwrap())
 }
@@ -381,14 +325,9 @@ fn on_clean_skewed_pulses_in_two_channels_the_default_times_both_maxima_to_10_ns
     for k in 0..10 {
         let lead_s = 0.5e-3 + 0.1e-6 * f64::from(k);
         let both = |i: i32| dry.separate(f64::from(i) * 1e-6 - lead_s);
-        let (sensor, wall): (Vec<f64>, Vec<f64>) = (0..2600)
-            .map(both)
-            .map(|[sensor, wall]| (sensor, wall))
-            .unzip();
-        let channels = Channels::Separate {
-            sensor: &sensor,
-            wall: &wall,
-        };
+        let (sensor, wall): (Vec<f64>, Vec<f64>) =
+            (0..2600).map(both).map(|[sensor, wall]| (sensor, wall)).unzip();
+        let channels = Channels::Separate { sensor: &sensor, wall: &wall };
         let shot = measure(channels, 1e-6, &SignalOptions::default()).unwrap();
         let off = off(&shot.flight.unwrap());
         assert!(off.iter().all(|off| off.abs() < 10e-9), "{off:?}");

@@ -21,10 +21,7 @@ fn numbers(fit: &PowerLaw) -> [f64; 6] {
 fn assert_close(found: [f64; 6], expected: [f64; 6]) {
     for (found, expected) in found.iter().zip(expected) {
         // Rounding of two different ways to solve the normal equations.
-        assert!(
-            (found / expected - 1.0).abs() < 1e-10,
-            "{found} for {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 1e-10, "{found} for {expected}");
     }
 }
 
@@ -82,19 +79,13 @@ fn two_points_lie_on_their_law() {
 fn what_cannot_be_fitted_is_refused() {
     let lengths = power_law(&[1.0, 2.0], &[1.0], None).unwrap_err();
     assert!(lengths.to_string().starts_with("2 abscissas and 1 values"));
-    assert_eq!(
-        power_law(&[1.0, 1.0], &[1.0, 2.0], None),
-        Err(FitError::TooFew)
-    );
+    assert_eq!(power_law(&[1.0, 1.0], &[1.0, 2.0], None), Err(FitError::TooFew));
     assert_eq!(power_law(&[1.0], &[1.0], None), Err(FitError::TooFew));
     assert_eq!(power_law(&[], &[], None), Err(FitError::TooFew));
     let not_positive = Err(FitError::NotPositive(1));
     assert_eq!(power_law(&[1.0, 2.0], &[1.0, -1.0], None), not_positive);
     assert_eq!(power_law(&[1.0, f64::NAN], &[1.0, 1.0], None), not_positive);
-    assert_eq!(
-        power_law(&[1.0, 2.0], &[1.0, 1.0], Some(&[1.0, 0.0])),
-        not_positive
-    );
+    assert_eq!(power_law(&[1.0, 2.0], &[1.0, 1.0], Some(&[1.0, 0.0])), not_positive);
 }
 
 #[test]
@@ -123,9 +114,6 @@ fn an_error_common_to_all_values_goes_to_the_prefactor() {
     let allowed = uncertainty(&SPEEDS, &[1e-6; 7]).unwrap();
     assert!(allowed.prefactor_relative >= 1e-6, "{allowed:?}");
     assert_eq!(uncertainty(&[1.0, 2.0], &[0.0; 2]).unwrap().exponent, 0.0);
-    assert_eq!(
-        uncertainty(&[1.0, 2.0], &[1e-6, f64::INFINITY]),
-        Err(FitError::NotPositive(1))
-    );
+    assert_eq!(uncertainty(&[1.0, 2.0], &[1e-6, f64::INFINITY]), Err(FitError::NotPositive(1)));
     assert_eq!(uncertainty(&[1.0], &[1e-6]), Err(FitError::TooFew));
 }

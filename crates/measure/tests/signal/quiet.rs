@@ -5,10 +5,7 @@ use hertzchain_measure::signal::{SignalOptions, measure};
 
 /// Stated error of the incident time, with so much of each channel in the other one.
 fn stated(crosstalk: f64) -> f64 {
-    let scene = Scene {
-        noise: 3e-3,
-        ..Scene::default()
-    };
+    let scene = Scene { noise: 3e-3, ..Scene::default() };
     let (sensor, wall) = scene.separate();
     let mixed = |own: &[f64], other: &[f64]| -> Vec<f64> {
         let pairs = own.iter().zip(other);

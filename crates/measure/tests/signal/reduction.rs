@@ -28,10 +28,7 @@ fn errors_in_both_coordinates_agree_with_orthogonal_distance_regression() {
         // Values: ODRPACK's stopping. Errors: its linearisation is about its own
         // estimates of the abscissas.
         let allowed = if i < 2 { 1e-7 } else { 2e-3 };
-        assert!(
-            (found / expected - 1.0).abs() < allowed,
-            "{i}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < allowed, "{i}: {found} {expected}");
     }
 }
 
@@ -73,10 +70,7 @@ fn what_cannot_be_fitted_with_both_errors_is_refused() {
     let index = FitError::NotPositive(1);
     assert_eq!(fit(&one, &[0.1, -0.1], &one, &one), Err(index.clone()));
     assert_eq!(fit(&one, &one, &[1.0, f64::NAN], &one), Err(index));
-    assert!(matches!(
-        fit(&one, &[0.1], &one, &one),
-        Err(FitError::Lengths { .. })
-    ));
+    assert!(matches!(fit(&one, &[0.1], &one, &one), Err(FitError::Lengths { .. })));
 }
 
 #[test]
@@ -90,10 +84,7 @@ fn a_summary_is_mean_deviation_and_errors_by_hand() {
     close(found.weighted.value, 6.0 / 2.25);
     close(found.weighted.sigma, 2.25_f64.powf(-0.5));
     let m: f64 = 6.0 / 2.25;
-    close(
-        found.chi_square,
-        (1.0 - m).powi(2) + (3.0 - m).powi(2) + (8.0 - m).powi(2) / 4.0,
-    );
+    close(found.chi_square, (1.0 - m).powi(2) + (3.0 - m).powi(2) + (8.0 - m).powi(2) / 4.0);
 }
 
 #[test]
@@ -115,10 +106,8 @@ fn shots_of_one_speed_come_together_whatever_their_order() {
 
 #[test]
 fn a_ratio_carries_the_errors_of_both_and_of_their_speeds() {
-    let point = |v: f64, t: f64| Point {
-        speed: estimate(v, 0.01 * v),
-        value: estimate(t, 0.003 * t),
-    };
+    let point =
+        |v: f64, t: f64| Point { speed: estimate(v, 0.01 * v), value: estimate(t, 0.003 * t) };
     let at = |v: f64, factor: f64| point(v, factor * v.powf(-0.2));
     let wet = [at(0.505, 1.04), at(0.9, 1.0)];
     let dry = [at(0.3, 1.0), at(0.5, 1.0)];

@@ -15,9 +15,7 @@ fn shot(noise: f64, back: f64, seed: u64) -> Vec<f64> {
     let since = |i: usize| (i as f64 * 1e-6 - pulses[1].0) / 400e-6;
     let falling = |t: f64| if t > 0.0 { 0.1 * (-t).exp() } else { 0.0 };
     let samples = clean.iter().enumerate();
-    samples
-        .map(|(i, x)| x + falling(since(i)) + noise * normal(&mut rng))
-        .collect()
+    samples.map(|(i, x)| x + falling(since(i)) + noise * normal(&mut rng)).collect()
 }
 
 /// In how many of so many shots a return is found.
@@ -50,10 +48,7 @@ fn low_returns_on_a_smooth_decay_are_found() {
 fn a_missing_return_is_reported() {
     let samples = shot(1e-3, 0.0, 1);
     let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
-    let missing = [
-        QualityFlag::Missing(PulseKind::Reflected),
-        QualityFlag::Unidentified,
-    ];
+    let missing = [QualityFlag::Missing(PulseKind::Reflected), QualityFlag::Unidentified];
     assert!(missing.iter().any(|doubt| shot.found.flags.contains(doubt)));
     assert!(shot.flight.unwrap().reflected_s.is_none());
 }

@@ -11,10 +11,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 fn under(superposition_s: f64) -> Systematic {
-    Systematic {
-        superposition_s,
-        shape_s: 0.0,
-    }
+    Systematic { superposition_s, shape_s: 0.0 }
 }
 
 #[test]
@@ -25,14 +22,8 @@ fn what_moves_all_shots_alike_stays_in_a_mean_and_noise_does_not() {
     assert_eq!(mean_systematic(&[]), 0.0);
     assert_eq!(without_systematic(5.0, pair(3.0, 0.0)), 4.0);
     assert_eq!(without_systematic(1.0, pair(3.0, 0.0)), 0.0);
-    let open = Systematic {
-        superposition_s: -3.0,
-        shape_s: 4.0,
-    };
-    assert_eq!(
-        mean_systematic(&[[open, under(0.0)], [open, under(0.0)]]),
-        5.0
-    );
+    let open = Systematic { superposition_s: -3.0, shape_s: 4.0 };
+    assert_eq!(mean_systematic(&[[open, under(0.0)], [open, under(0.0)]]), 5.0);
     assert_eq!(without_systematic(13.0, [open, under(0.0)]), 12.0);
 }
 
@@ -69,10 +60,7 @@ fn what_is_left_of_a_trail_of_the_wall_under_a_return_is_in_its_error() {
         };
         let (by, may) = moved(&with(trail));
         // A share of the largest fall is taken out, as of computed rows; trails fall by another.
-        assert!(
-            may < 0.0 && by.abs() < 1.96 * may.abs(),
-            "{time_s}: {by:e} {may:e}"
-        );
+        assert!(may < 0.0 && by.abs() < 1.96 * may.abs(), "{time_s}: {by:e} {may:e}");
     }
 }
 
@@ -103,10 +91,7 @@ fn noisy_dry(shots: u64) -> (Vec<Estimate>, Vec<[Systematic; 2]>) {
         let sample = |i: usize| dry.summed(i as f64 * 1e-6 - begun_s) + 0.003 * normal(&mut rng);
         let samples: Vec<f64> = (0..2600).map(sample).collect();
         let flight = of(&samples);
-        let error = Estimate {
-            value: flight.incident_s.value - truth_s,
-            ..flight.incident_s
-        };
+        let error = Estimate { value: flight.incident_s.value - truth_s, ..flight.incident_s };
         (error, flight.systematic()[0])
     };
     (0..shots).map(shot).unzip()
@@ -121,10 +106,7 @@ fn a_mean_of_skewed_pulses_is_as_far_off_as_what_is_open_of_their_shape_allows()
     let squares = squares.map(|(error, moved)| without_systematic(error.sigma, *moved).powi(2));
     let alone_s = squares.sum::<f64>().sqrt() / count;
     let shared_s = mean_systematic(&moved);
-    assert!(
-        mean.abs() < 1.96 * alone_s.hypot(shared_s),
-        "{mean:e} {shared_s:e}"
-    );
+    assert!(mean.abs() < 1.96 * alone_s.hypot(shared_s), "{mean:e} {shared_s:e}");
     // A mean that is no better than a shot would say nothing.
     let one_s = errors.iter().map(|error| error.sigma).sum::<f64>() / count;
     assert!(shared_s < 0.5 * one_s, "{shared_s:e} {one_s:e}");
@@ -142,10 +124,7 @@ fn beneath_a_fall(ratio: f64) -> (f64, bool) {
         *volt -= 0.016 * (-((i as f64 - 1450.0) / 50.0).powi(2)).exp();
     }
     let shot = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
-    let reported = shot
-        .found
-        .flags
-        .contains(&QualityFlag::Asymmetric(PulseKind::Wall));
+    let reported = shot.found.flags.contains(&QualityFlag::Asymmetric(PulseKind::Wall));
     (shot.flight.unwrap().incident_s.sigma, reported)
 }
 

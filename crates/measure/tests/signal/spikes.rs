@@ -35,16 +35,10 @@ fn clean_records_have_no_spikes_whatever_their_rate_and_noise() {
             for seed in 0..6 {
                 let samples = record(interval_us * 1e-6, noise, seed);
                 let (_, spikes) = without_spikes(&samples);
-                assert!(
-                    spikes.is_empty(),
-                    "{interval_us} µs, noise {noise}: {spikes:?}"
-                );
+                assert!(spikes.is_empty(), "{interval_us} µs, noise {noise}: {spikes:?}");
                 // Eight bits.
                 let rounded: Vec<f64> = samples.iter().map(|x| (64.0 * x).round()).collect();
-                assert!(
-                    without_spikes(&rounded).1.is_empty(),
-                    "{interval_us} µs, {noise}"
-                );
+                assert!(without_spikes(&rounded).1.is_empty(), "{interval_us} µs, {noise}");
             }
         }
     }
@@ -63,10 +57,7 @@ fn bells_three_samples_wide_are_no_spikes() {
                 clean + noise * normal(&mut rng)
             };
             let samples: Vec<f64> = (0..400).map(sample).collect();
-            assert!(
-                without_spikes(&samples).1.is_empty(),
-                "{width}, seed {seed}"
-            );
+            assert!(without_spikes(&samples).1.is_empty(), "{width}, seed {seed}");
         }
     }
 }
@@ -82,11 +73,7 @@ fn spiked(noise: f64, height: f64, seed: u64) -> (Vec<f64>, Vec<usize>) {
     let mut spikes = Vec::new();
     for (number, at) in [on_pulse, anywhere].into_iter().enumerate() {
         let count = 1 + (seed as usize + number) % 2;
-        let sign = if (seed / 2).is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        };
+        let sign = if (seed / 2).is_multiple_of(2) { 1.0 } else { -1.0 };
         let both = samples.iter_mut().enumerate().skip(at as usize);
         for (at, sample) in both.take(count) {
             *sample += sign * height;
@@ -100,13 +87,7 @@ fn spiked(noise: f64, height: f64, seed: u64) -> (Vec<f64>, Vec<usize>) {
 
 #[test]
 fn spikes_of_one_or_two_samples_are_found_from_fifteen_deviations_of_noise_up() {
-    for (noise, height) in [
-        (1e-3, 0.015),
-        (1e-3, 0.1),
-        (1e-2, 0.15),
-        (1e-2, 1.0),
-        (1e-4, 3.0),
-    ] {
+    for (noise, height) in [(1e-3, 0.015), (1e-3, 0.1), (1e-2, 0.15), (1e-2, 1.0), (1e-4, 3.0)] {
         for seed in 0..30 {
             let (samples, spikes) = spiked(noise, height, seed);
             let (repaired, found) = without_spikes(&samples);
@@ -115,10 +96,7 @@ fn spikes_of_one_or_two_samples_are_found_from_fifteen_deviations_of_noise_up() 
             let clean = record(1e-6, noise, seed);
             for at in found {
                 let off = (repaired[at] - clean[at]).abs();
-                assert!(
-                    off < 6.0 * 1.5 * noise,
-                    "noise {noise}, height {height}: {off}"
-                );
+                assert!(off < 6.0 * 1.5 * noise, "noise {noise}, height {height}: {off}");
             }
         }
     }
@@ -140,15 +118,9 @@ fn times_of_shots_with_spikes_are_as_right_as_stated_and_the_spikes_are_counted(
             assert!(pull.abs() < 4.5, "height {height}, seed {seed}: {pull}");
             squares += pull * pull;
             count += 1.0;
-            let spikes = found
-                .flags
-                .iter()
-                .any(|doubt| matches!(doubt, QualityFlag::Spikes(2..=4)));
-            assert!(
-                spikes || height < 0.04,
-                "height {height}, seed {seed}: {:?}",
-                found.flags
-            );
+            let spikes =
+                found.flags.iter().any(|doubt| matches!(doubt, QualityFlag::Spikes(2..=4)));
+            assert!(spikes || height < 0.04, "height {height}, seed {seed}: {:?}", found.flags);
         }
     }
     // Spikes too low to be found add to the noise: by a fifth at most. 150 pulls give 12 %.

@@ -21,10 +21,7 @@ fn assert_scipy(low_pass: LowPass, at: [f64; 8], sum: f64) {
 
 #[test]
 fn second_order_agrees_with_scipy_filtfilt() {
-    let low_pass = LowPass {
-        cutoff_hz: 40e3,
-        order: 2,
-    };
+    let low_pass = LowPass { cutoff_hz: 40e3, order: 2 };
     let at = [
         -0.001205196070149609,
         0.013382773742524296,
@@ -40,10 +37,7 @@ fn second_order_agrees_with_scipy_filtfilt() {
 
 #[test]
 fn fourth_order_agrees_with_scipy_filtfilt() {
-    let low_pass = LowPass {
-        cutoff_hz: 120e3,
-        order: 4,
-    };
+    let low_pass = LowPass { cutoff_hz: 120e3, order: 4 };
     let at = [
         -0.0012348831856834066,
         0.04873673039618041,
@@ -70,8 +64,5 @@ fn what_cannot_be_filtered_is_refused() {
     assert!(refused(low_pass(1e5, 4), &[1.0; 15], 1e-6));
     let mut bad = samples();
     bad[40] = f64::NAN;
-    assert!(matches!(
-        low_pass(1e5, 2).apply(&bad, 1e-6),
-        Err(MeasureError::NotFinite(40, _))
-    ));
+    assert!(matches!(low_pass(1e5, 2).apply(&bad, 1e-6), Err(MeasureError::NotFinite(40, _))));
 }

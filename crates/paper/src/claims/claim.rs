@@ -246,8 +246,7 @@ pub fn evaluate_all_rounded<E>(
     draws: &[E],
 ) -> Vec<EvaluatedClaim> {
     let all = evaluators.iter();
-    all.map(|evaluator| decide(evaluator, printed, draws))
-        .collect()
+    all.map(|evaluator| decide(evaluator, printed, draws)).collect()
 }
 
 fn decide<E>(evaluator: &Evaluator<E>, printed: &E, draws: &[E]) -> EvaluatedClaim {

@@ -131,10 +131,7 @@ impl Curve {
         let exponent = |a: &Point, b: &Point| {
             let span = (b.speed_m_s / a.speed_m_s).ln();
             let rise = (b.tof_s(branch) / a.tof_s(branch)).ln();
-            (
-                rise / span,
-                (a.accuracy_reached + b.accuracy_reached) / span,
-            )
+            (rise / span, (a.accuracy_reached + b.accuracy_reached) / span)
         };
         let last = self.points.len().saturating_sub(1);
         let around = |i: usize| {
@@ -152,18 +149,14 @@ impl Curve {
     /// dT/dv of a branch in s²/m at every speed.
     pub(crate) fn slopes_s2_m(&self, branch: Branch) -> Vec<f64> {
         let slopes = self.exponents(branch).into_iter().zip(&self.points);
-        slopes
-            .map(|((exponent, _), p)| exponent * p.tof_s(branch) / p.speed_m_s)
-            .collect()
+        slopes.map(|((exponent, _), p)| exponent * p.tof_s(branch) / p.speed_m_s).collect()
     }
 
     /// Relative accuracy of dT/dv at every speed: that of the local exponent
     /// and of the ToF.
     pub(crate) fn slope_accuracies(&self, branch: Branch) -> Vec<f64> {
         let exponents = self.exponents(branch).into_iter().zip(&self.points);
-        exponents
-            .map(|((exponent, off), p)| (off / exponent).abs() + p.accuracy_reached)
-            .collect()
+        exponents.map(|((exponent, off), p)| (off / exponent).abs() + p.accuracy_reached).collect()
     }
 
     /// Standard error in s that the paper's points have: the scatter of the

@@ -104,12 +104,7 @@ impl Finding {
     pub(crate) fn of_one(margin: f64, value: f64, accuracy: f64, detail: String) -> Self {
         let mut comparisons = Comparisons::default();
         comparisons.add(margin, value, accuracy, String::new);
-        Self {
-            value,
-            accuracy,
-            detail,
-            ..comparisons.finding()
-        }
+        Self { value, accuracy, detail, ..comparisons.finding() }
     }
 
     /// The finding at the threshold, or in part where only the weaker one is met.
@@ -170,11 +165,7 @@ impl Counts {
         };
         // More comparisons met never make a verdict worse: the extremes decide.
         let (least, most) = (when_met(self.yes), when_met(self.yes + self.open));
-        if least == most {
-            least
-        } else {
-            Verdict::NotDecidable
-        }
+        if least == most { least } else { Verdict::NotDecidable }
     }
 }
 

@@ -46,9 +46,8 @@ fn row(evaluated: &EvaluatedClaim) -> Value {
     });
     if let (Some(rounded), Some(row)) = (&evaluated.rounded, row.as_object_mut()) {
         let counts = Verdict::ALL.iter().zip(rounded.verdicts);
-        let counts: Map<String, Value> = counts
-            .map(|(verdict, count)| (verdict.name().to_owned(), json!(count)))
-            .collect();
+        let counts: Map<String, Value> =
+            counts.map(|(verdict, count)| (verdict.name().to_owned(), json!(count))).collect();
         let rounding = json!({
             "draws": rounded.draws,
             "verdicts": counts,
@@ -81,9 +80,7 @@ fn number(value: f64) -> Value {
 #[must_use]
 pub fn claims_markdown(evaluated: &[EvaluatedClaim], head: &str) -> String {
     let mut page = format!("{head}\n\n{}\n\n", verdicts_text());
-    let drawn = evaluated
-        .iter()
-        .any(|evaluated| evaluated.rounded.is_some());
+    let drawn = evaluated.iter().any(|evaluated| evaluated.rounded.is_some());
     let mut header = vec!["claim", "verdict", "computed", "needed"];
     if drawn {
         page.push_str(ROUNDING);
@@ -138,12 +135,7 @@ fn section(page: &mut String, evaluated: &EvaluatedClaim) {
     let (claim, finding) = (&evaluated.claim, &evaluated.finding);
     let _ = writeln!(page, "\n### `{}`: {}\n", claim.id, evaluated.verdict);
     let _ = writeln!(page, "{} ({})\n", claim.statement, claim.paper);
-    let _ = writeln!(
-        page,
-        "- Computed: {} ({}).",
-        computed_text(evaluated),
-        claim.value
-    );
+    let _ = writeln!(page, "- Computed: {} ({}).", computed_text(evaluated), claim.value);
     if let (Some(expected), Some(deviation)) = (finding.expected, finding.deviation()) {
         let expected = with_unit(expected, claim);
         let sign = if deviation > 0.0 { "+" } else { "" };
@@ -165,9 +157,8 @@ fn section(page: &mut String, evaluated: &EvaluatedClaim) {
 fn rounding(page: &mut String, evaluated: &EvaluatedClaim, rounded: &Rounded) {
     let counts = Verdict::ALL.iter().zip(rounded.verdicts);
     let counts = counts.filter(|(_, count)| *count > 0);
-    let counts: Vec<String> = counts
-        .map(|(verdict, count)| format!("{verdict} in {count}"))
-        .collect();
+    let counts: Vec<String> =
+        counts.map(|(verdict, count)| format!("{verdict} in {count}")).collect();
     let open = match rounded.open {
         0 => String::new(),
         open => format!(" ({open} of them by less than their accuracy)"),
@@ -177,9 +168,7 @@ fn rounding(page: &mut String, evaluated: &EvaluatedClaim, rounded: &Rounded) {
         false => String::new(),
     };
     let range = rounded_text(evaluated);
-    let range = range.map_or(String::new(), |range| {
-        format!("; computed: {range}{in_some}")
-    });
+    let range = range.map_or(String::new(), |range| format!("; computed: {range}{in_some}"));
     let _ = writeln!(
         page,
         "- Rounding of the printed constants, {} draws: {}{open}{range}. The constants as printed give: {}.",

@@ -35,11 +35,9 @@ pub fn figures(of: &Reproduction) -> Result<Vec<(&'static str, Figure)>, Reprodu
 /// Titles and captions of figures as Markdown.
 #[must_use]
 pub fn captions(figures: &[(&str, Figure)]) -> String {
-    figures
-        .iter()
-        .fold(String::from("# Captions\n"), |text, (name, figure)| {
-            text + &format!("\n## {name}\n{}\n", figure.caption_text())
-        })
+    figures.iter().fold(String::from("# Captions\n"), |text, (name, figure)| {
+        text + &format!("\n## {name}\n{}\n", figure.caption_text())
+    })
 }
 
 /// Name of a case in legends.
@@ -80,29 +78,20 @@ const FOOTROOM: f64 = 0.04;
 fn signals(signals: &[SignalShot]) -> Figure {
     let empty = Figure::single_column(172.0).letters();
     let panels = signals.iter().enumerate();
-    let full = panels.fold(empty, |figure, (i, signal)| {
-        figure.panel(signal_panel(signal, i == 0))
-    });
-    full.title("Signals of bead 7 and wall in one channel")
-        .caption(
-            "Dynamic force of bead 7 and of the wall, added into one channel, against the time \
+    let full = panels.fold(empty, |figure, (i, signal)| figure.panel(signal_panel(signal, i == 0)));
+    full.title("Signals of bead 7 and wall in one channel").caption(
+        "Dynamic force of bead 7 and of the wall, added into one channel, against the time \
              since the striker's impact: the computed shots that the paper's Fig. 2 shows. Symbols \
              mark the peaks between which times of flight are taken.",
-        )
+    )
 }
 
 fn signal_panel(signal: &SignalShot, legend: bool) -> Chart {
     let time = scaled(&signal.time_s, US);
-    let title = format!(
-        "{}, $v_0$ = {:.4} m/s",
-        label(&signal.case),
-        signal.speed_m_s
-    );
-    let mut chart = Chart::new("Time (µs)", "Force (N)").title(&title).with(
-        Series::line("", &time, &signal.channel_n)
-            .colour(Colour::BLACK)
-            .width(0.8),
-    );
+    let title = format!("{}, $v_0$ = {:.4} m/s", label(&signal.case), signal.speed_m_s);
+    let mut chart = Chart::new("Time (µs)", "Force (N)")
+        .title(&title)
+        .with(Series::line("", &time, &signal.channel_n).colour(Colour::BLACK).width(0.8));
     for ((time, force), (name, marker, colour)) in signal.peaks.iter().zip(PULSES) {
         let peak = Series::points(name, &[time * US], &[*force]);
         chart = chart.with(peak.marker(marker).colour(colour));
@@ -171,10 +160,7 @@ fn viscoelastic(curve: &Curve, branch: Branch, colour: Colour) -> Series {
 }
 
 fn line(name: &str, speeds_m_s: &[f64], times_us: &[f64], colour: Colour) -> Series {
-    Series::line(name, speeds_m_s, times_us)
-        .colour(colour)
-        .dash(Dash::Dashed)
-        .width(0.8)
+    Series::line(name, speeds_m_s, times_us).colour(colour).dash(Dash::Dashed).width(0.8)
 }
 
 /// Error bars: the scatter of the speed from shot to shot, carried through dT/dv.
@@ -185,25 +171,19 @@ fn dry(curve: &Curve, branch: Branch, marker: Marker, colour: Colour) -> Series 
         .map(|slope| slope.abs() * SPEED_SCATTER_M_S * US)
         .collect();
     let name = format!("{}, dry law", branch.name());
-    Series::line(
-        &name,
-        &curve.speeds_m_s(),
-        &scaled(&curve.tofs_s(branch), US),
-    )
-    .marker(marker)
-    .colour(colour)
-    .dash(Dash::Solid)
-    .width(0.8)
-    .y_error(&errors)
+    Series::line(&name, &curve.speeds_m_s(), &scaled(&curve.tofs_s(branch), US))
+        .marker(marker)
+        .colour(colour)
+        .dash(Dash::Solid)
+        .width(0.8)
+        .y_error(&errors)
 }
 
 /// Three ratios against speed with a line at 1.
 fn ratios(evidence: &Evidence) -> Figure {
     let ratio = r"$\mathrm{ToF}_{\mathrm{wet}} / \mathrm{ToF}_{\mathrm{dry}}$, incident";
     let empty = Chart::new("Striker speed $v_0$ (m/s)", ratio).h_line(1.0, "");
-    let chart = OILS.iter().fold(empty, |chart, case| {
-        chart.with(ratio_series(evidence, case))
-    });
+    let chart = OILS.iter().fold(empty, |chart, case| chart.with(ratio_series(evidence, case)));
     Figure::single_column(68.0)
         .panel(chart)
         .title("Ratio of wet to dry time of flight against the striker's speed")
@@ -230,15 +210,11 @@ fn ratio_series(evidence: &Evidence, case: &str) -> Series {
 fn space_time(films: &[Film]) -> Figure {
     let empty = Figure::single_column(124.0).letters();
     // The striker is faster than any bead and would pale the wave.
-    let largest = films
-        .iter()
-        .flat_map(|film| film.velocity_m_s.iter().skip(1).flatten());
+    let largest = films.iter().flat_map(|film| film.velocity_m_s.iter().skip(1).flatten());
     let largest = largest.fold(0.0_f64, |most, v| most.max(v.abs()));
     films
         .iter()
-        .fold(empty, |figure, film| {
-            figure.panel(velocity_map(film, largest))
-        })
+        .fold(empty, |figure, film| figure.panel(velocity_map(film, largest)))
         .title("Bead velocity over time and place")
         .caption(
             "Velocity of every bead against time, positive towards the wall above bead 40. The \
@@ -258,9 +234,7 @@ fn velocity_map(film: &Film, largest: f64) -> Chart {
         .colours(ColourMap::Diverging)
         .label("Velocity (m/s)");
     let title = format!("{}, $v_0$ = {:.4} m/s", label(&film.case), film.speed_m_s);
-    Chart::new("Time (µs)", "Bead (0: striker)")
-        .title(&title)
-        .heat(map)
+    Chart::new("Time (µs)", "Bead (0: striker)").title(&title).heat(map)
 }
 
 /// A panel of stacked shares for each shot, and what the budgets miss.
@@ -277,10 +251,7 @@ fn energy(films: &[Film]) -> Figure {
 }
 
 fn times_us(film: &Film) -> Vec<f64> {
-    film.budgets
-        .iter()
-        .map(|budget| budget.time_s * US)
-        .collect()
+    film.budgets.iter().map(|budget| budget.time_s * US).collect()
 }
 
 /// Stacked shares: kinetic lowest, then elastic, then one band a lossy law.
@@ -288,21 +259,11 @@ fn shares_of(film: &Film, legend: bool) -> Chart {
     let time = times_us(film);
     let title = format!("{}, $v_0$ = {:.4} m/s", label(&film.case), film.speed_m_s);
     let empty = Chart::new("Time (µs)", "Share of initial energy").title(&title);
-    let mut chart = empty
-        .y_range(0.0, 1.0)
-        .legend(if legend { Legend::Auto } else { Legend::Off });
+    let mut chart = empty.y_range(0.0, 1.0).legend(if legend { Legend::Auto } else { Legend::Off });
     let mut below = vec![0.0; time.len()];
     for (name, colour, part) in parts(&film.budgets) {
-        let share = film
-            .budgets
-            .iter()
-            .zip(&part)
-            .map(|(b, part)| part / b.start_j);
-        let above: Vec<f64> = below
-            .iter()
-            .zip(share)
-            .map(|(low, share)| low + share)
-            .collect();
+        let share = film.budgets.iter().zip(&part).map(|(b, part)| part / b.start_j);
+        let above: Vec<f64> = below.iter().zip(share).map(|(low, share)| low + share).collect();
         chart = chart.with(Series::band(&name, &time, &below, &above).colour(colour));
         below = above;
     }
@@ -314,21 +275,14 @@ fn parts(budgets: &[Budget]) -> Vec<(String, Colour, Vec<f64>)> {
     let column = |of: &dyn Fn(&Budget) -> f64| budgets.iter().map(of).collect::<Vec<f64>>();
     let mut parts = vec![
         ("kinetic".to_owned(), Colour::SKY, column(&|b| b.kinetic_j)),
-        (
-            "elastic".to_owned(),
-            Colour::GREEN,
-            column(&|b| b.elastic_j),
-        ),
+        ("elastic".to_owned(), Colour::GREEN, column(&|b| b.elastic_j)),
     ];
     let colours = [Colour::OCHRE, Colour::VERMILION, Colour::PURPLE];
     let laws = budgets.first().map_or(&[][..], |first| &first.dissipated);
     for (i, law) in laws.iter().enumerate() {
         let lost = column(&|b| b.dissipated.get(i).map_or(0.0, |line| line.energy_j));
         let kind = law.law.trim_start_matches("damping_").replace('_', " ");
-        let colour = colours
-            .get(i % colours.len())
-            .copied()
-            .unwrap_or(Colour::GREY);
+        let colour = colours.get(i % colours.len()).copied().unwrap_or(Colour::GREY);
         parts.push((format!("lost, {kind}"), colour, lost));
     }
     parts
@@ -340,15 +294,13 @@ fn residuals(films: &[Film]) -> Chart {
         (Colour::VERMILION, Dash::Dashed),
         (Colour::BLUE, Dash::DashDotted),
     ];
-    let empty = Chart::new("Time (µs)", "Share of initial energy")
-        .title("residual of the budgets")
-        .y_log();
+    let empty =
+        Chart::new("Time (µs)", "Share of initial energy").title("residual of the budgets").y_log();
     let looks = looks.into_iter().cycle();
     films.iter().zip(looks).fold(empty, |chart, (film, look)| {
         let missing = film.budgets.iter().map(|b| b.relative_residual().abs());
-        let missing: Vec<f64> = missing
-            .map(|share| if share > 0.0 { share } else { f64::NAN })
-            .collect();
+        let missing: Vec<f64> =
+            missing.map(|share| if share > 0.0 { share } else { f64::NAN }).collect();
         let line = Series::line(label(&film.case), &times_us(film), &missing);
         chart.with(line.colour(look.0).dash(look.1).width(0.8))
     })

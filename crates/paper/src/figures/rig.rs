@@ -94,8 +94,7 @@ fn label(experiment: &Experiment, part: &RigPart) -> String {
     };
     let numbers = [
         part.mass_kg.map(|mass| format!("{}\u{a0}kg", digits(mass))),
-        part.length_m
-            .map(|length| format!("{}\u{a0}mm", digits(length * 1e3))),
+        part.length_m.map(|length| format!("{}\u{a0}mm", digits(length * 1e3))),
         part.force_n.map(force),
         recorded.map(|words| unbroken(&words)),
     ];
@@ -141,10 +140,7 @@ fn bead_label(experiment: &Experiment, beads: &[Bead]) -> String {
         radius.map(|m| format!("$R$\u{a0}=\u{a0}{}\u{a0}mm", digits(m * 1e3))),
         mass.map(|kg| format!("$m$\u{a0}=\u{a0}{}\u{a0}g", digits(kg * 1e3))),
     ];
-    let all: Vec<String> = words
-        .into_iter()
-        .chain(numbers.into_iter().flatten())
-        .collect();
+    let all: Vec<String> = words.into_iter().chain(numbers.into_iter().flatten()).collect();
     all.join(", ")
 }
 

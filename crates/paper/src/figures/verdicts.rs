@@ -74,18 +74,11 @@ fn name(scan: &Scan, claim: usize, id: &str) -> String {
 }
 
 /// Verdicts in the order of the lists below the table.
-const LISTED: [Verdict; 4] = [
-    Verdict::Holds,
-    Verdict::InPart,
-    Verdict::Fails,
-    Verdict::NotDecidable,
-];
+const LISTED: [Verdict; 4] =
+    [Verdict::Holds, Verdict::InPart, Verdict::Fails, Verdict::NotDecidable];
 
 fn place(verdict: Verdict) -> usize {
-    LISTED
-        .iter()
-        .take_while(|listed| **listed != verdict)
-        .count()
+    LISTED.iter().take_while(|listed| **listed != verdict).count()
 }
 
 /// One reading, or options of one switch with the same verdicts.
@@ -108,11 +101,7 @@ impl ReadingColumn<'_> {
 }
 
 fn columns(scan: &Scan) -> Vec<ReadingColumn<'_>> {
-    let always = |name: &str, row| ReadingColumn {
-        name: name.to_owned(),
-        switch: "",
-        row,
-    };
+    let always = |name: &str, row| ReadingColumn { name: name.to_owned(), switch: "", row };
     let mut columns = vec![always("default", &scan.default)];
     for row in &scan.single {
         let Some((switch, option)) = row.reading.changes().first().copied() else {
@@ -122,11 +111,7 @@ fn columns(scan: &Scan) -> Vec<ReadingColumn<'_>> {
             Some(last) if last.switch == switch && last.row.verdicts == row.verdicts => {
                 last.name += &format!(", {option}");
             }
-            _ => columns.push(ReadingColumn {
-                name: format!("{switch} = {option}"),
-                switch,
-                row,
-            }),
+            _ => columns.push(ReadingColumn { name: format!("{switch} = {option}"), switch, row }),
         }
     }
     columns.push(always("closest to the paper", scan.closest()));
@@ -177,30 +162,22 @@ fn verdicts(claims: &RigClaims) -> Figure {
         let cells: Vec<Verdict> = claims.rigs.iter().map(cell(at)).collect();
         matrix.row(&evaluated.claim.id.replace('-', " "), &cells)
     });
-    matrix
-        .figure()
-        .title("What the paper says of its rig, on virtual ones")
+    matrix.figure().title("What the paper says of its rig, on virtual ones")
 }
 
 /// Spreads of times of flight against each factor, the others as usual; beside
 /// them what the striker's own irregularity adds.
 fn spreads(evidence: &Evidence) -> Figure {
     let kinds: [(&str, Colour, Marker, Of); 3] = [
-        (
-            "reflected, with taps",
-            Colour::GREEN,
-            Marker::OpenSquare,
-            |at| spread_s(&at.tapped, Branch::Reflected),
-        ),
+        ("reflected, with taps", Colour::GREEN, Marker::OpenSquare, |at| {
+            spread_s(&at.tapped, Branch::Reflected)
+        }),
         ("incident, with taps", Colour::BLUE, Marker::Circle, |at| {
             spread_s(&at.tapped, Branch::Incident)
         }),
-        (
-            "incident, without taps",
-            Colour::VERMILION,
-            Marker::Triangle,
-            |at| spread_s(&at.loose, Branch::Incident),
-        ),
+        ("incident, without taps", Colour::VERMILION, Marker::Triangle, |at| {
+            spread_s(&at.loose, Branch::Incident)
+        }),
     ];
     let added_ns = evidence.rigs.first().map_or(f64::NAN, |usual| {
         let scatter = usual.with_scatter_s(Branch::Incident);
@@ -224,14 +201,7 @@ fn spreads(evidence: &Evidence) -> Figure {
             chart = chart.with(points.colour(colour).marker(marker));
         }
         let first = at == 0;
-        chart = chart.h_line(
-            added_ns,
-            if first {
-                "by the striker\u{2019}s ± 3 mm/s"
-            } else {
-                ""
-            },
-        );
+        chart = chart.h_line(added_ns, if first { "by the striker\u{2019}s ± 3 mm/s" } else { "" });
         let legend = if first { Legend::Auto } else { Legend::Off };
         figure = figure.panel(chart.legend(legend));
     }
@@ -249,14 +219,11 @@ fn one_at_a_time(evidence: &Evidence, factor: usize) -> Vec<(f64, &Observed)> {
     let usual = Rig::usual();
     let same = |rig: &Rig| {
         let pairs = rig.values.iter().zip(usual.values).enumerate();
-        pairs
-            .into_iter()
-            .all(|(at, (value, usual))| at == factor || *value == usual)
+        pairs.into_iter().all(|(at, (value, usual))| at == factor || *value == usual)
     };
     let rigs = evidence.rigs.iter().filter(|observed| same(&observed.rig));
-    let mut rigs: Vec<(f64, &Observed)> = rigs
-        .filter_map(|observed| Some((*observed.rig.values.get(factor)?, observed)))
-        .collect();
+    let mut rigs: Vec<(f64, &Observed)> =
+        rigs.filter_map(|observed| Some((*observed.rig.values.get(factor)?, observed))).collect();
     rigs.sort_by(|one, other| one.0.total_cmp(&other.0));
     rigs
 }
@@ -321,11 +288,7 @@ fn gaps(evidence: &Evidence) -> Figure {
 /// All gaps in m after the fastest shot, as a mean.
 fn left_m(observed: &Observed) -> f64 {
     observed.speeds.last().map_or(0.0, |at| {
-        let sums: Vec<f64> = at
-            .tapped
-            .iter()
-            .map(|shot| shot.gaps_after_m.iter().sum())
-            .collect();
+        let sums: Vec<f64> = at.tapped.iter().map(|shot| shot.gaps_after_m.iter().sum()).collect();
         mean(&sums)
     })
 }
@@ -347,15 +310,13 @@ fn row(observed: &Observed, at: &AtSpeed) -> Chart {
         ("after a shot", after_m, Colour::VERMILION, Marker::Triangle),
         ("after taps", before_m, Colour::BLUE, Marker::Circle),
     ];
-    kinds
-        .into_iter()
-        .fold(chart, |chart, (name, gaps_m, colour, marker)| {
-            let gaps: Vec<f64> = gaps_m.iter().map(|gap_m| gap_m / unit_m).collect();
-            let numbers: Vec<f64> = (1..=gaps.len()).map(|contact| contact as f64).collect();
-            let name = format!("{name}: {:.0} {unit} in all", gaps.iter().sum::<f64>());
-            let points = Series::points(&name, &numbers, &gaps);
-            chart.with(points.colour(colour).marker(marker))
-        })
+    kinds.into_iter().fold(chart, |chart, (name, gaps_m, colour, marker)| {
+        let gaps: Vec<f64> = gaps_m.iter().map(|gap_m| gap_m / unit_m).collect();
+        let numbers: Vec<f64> = (1..=gaps.len()).map(|contact| contact as f64).collect();
+        let name = format!("{name}: {:.0} {unit} in all", gaps.iter().sum::<f64>());
+        let points = Series::points(&name, &numbers, &gaps);
+        chart.with(points.colour(colour).marker(marker))
+    })
 }
 
 /// What holds the beads of a rig where they are, of the factors that are tried.

@@ -24,10 +24,8 @@ pub(crate) fn scan_csv(scan: &Scan) -> String {
         let options = Reading::switches().iter();
         let options = options.map(|s| row.reading.get(s.name).unwrap_or_default().to_owned());
         let verdicts = row.verdicts.iter().map(|verdict| verdict.name().to_owned());
-        let fields: Vec<String> = options
-            .chain([row.score().to_string()])
-            .chain(verdicts)
-            .collect();
+        let fields: Vec<String> =
+            options.chain([row.score().to_string()]).chain(verdicts).collect();
         let _ = writeln!(csv, "{}", fields.join(","));
     }
     csv
@@ -71,12 +69,7 @@ fn rounding(page: &mut String, scan: &Scan) {
 fn table_row(page: &mut String, scan: &Scan, row: &Row) {
     let (gained, lost) = row.against(&scan.default);
     let (gained, lost) = (names(scan, &gained), names(scan, &lost));
-    let _ = writeln!(
-        page,
-        "| {} | {} | {gained} | {lost} |",
-        row.reading,
-        row.score()
-    );
+    let _ = writeln!(page, "| {} | {} | {gained} | {lost} |", row.reading, row.score());
 }
 
 /// Names of claims, by index.
@@ -119,9 +112,7 @@ fn product(page: &mut String, scan: &Scan) {
     let mut rows: Vec<&Row> = scan.product.iter().collect();
     rows.sort_by(|a, b| {
         let changes = |row: &Row| row.reading.changes().len();
-        b.score()
-            .total_cmp(&a.score())
-            .then(changes(a).cmp(&changes(b)))
+        b.score().total_cmp(&a.score()).then(changes(a).cmp(&changes(b)))
     });
     for row in rows.into_iter().take(10) {
         table_row(page, scan, row);
@@ -130,9 +121,7 @@ fn product(page: &mut String, scan: &Scan) {
 
 /// Switches with the number of their options.
 fn factors(factors: &[SwitchOptions]) -> String {
-    let texts = factors
-        .iter()
-        .map(|(name, options)| format!("{name} ({})", options.len()));
+    let texts = factors.iter().map(|(name, options)| format!("{name} ({})", options.len()));
     texts.collect::<Vec<_>>().join(", ")
 }
 
@@ -156,11 +145,7 @@ fn closest(page: &mut String, scan: &Scan) {
         row.score_without(&scan.flipped_in_closest),
         scan.default.score_without(&scan.flipped_by_rounding),
     );
-    let equals: Vec<String> = scan
-        .as_close()
-        .iter()
-        .map(|row| row.reading.to_string())
-        .collect();
+    let equals: Vec<String> = scan.as_close().iter().map(|row| row.reading.to_string()).collect();
     if !equals.is_empty() {
         let _ = writeln!(
             page,
@@ -169,19 +154,12 @@ fn closest(page: &mut String, scan: &Scan) {
         );
     }
     let or_none = |list: String| {
-        if list.is_empty() {
-            "nothing".to_owned()
-        } else {
-            list
-        }
+        if list.is_empty() { "nothing".to_owned() } else { list }
     };
     let _ = writeln!(page, "- Gained: {}.", or_none(names(scan, &gained)));
     let _ = writeln!(page, "- Missing: {}.", or_none(names(scan, &lost)));
     let unmet = row.verdicts.iter().enumerate();
-    let unmet: Vec<usize> = unmet
-        .filter(|(_, v)| **v == Verdict::Fails)
-        .map(|(i, _)| i)
-        .collect();
+    let unmet: Vec<usize> = unmet.filter(|(_, v)| **v == Verdict::Fails).map(|(i, _)| i).collect();
     let _ = writeln!(page, "- Still failing: {}.", or_none(names(scan, &unmet)));
 }
 
@@ -219,10 +197,7 @@ fn prices(page: &mut String, scan: &Scan) {
         let default = verdict(&scan.default);
         match &price.row {
             None => {
-                let _ = writeln!(
-                    page,
-                    "| {name} | {default} | {default} | no reading tried | | |"
-                );
+                let _ = writeln!(page, "| {name} | {default} | {default} | no reading tried | | |");
             }
             Some(row) => {
                 let lost = names(scan, &row.against(&scan.default).1);
@@ -253,11 +228,7 @@ pub(crate) fn two_digits_markdown(
     for (two, one) in pairs.filter(|(two, one)| two.verdict != one.verdict) {
         let range = rounded_text(one).unwrap_or_default();
         let id = &one.claim.id;
-        let _ = writeln!(
-            page,
-            "| {id} | {} | {} | {range} |",
-            two.verdict, one.verdict
-        );
+        let _ = writeln!(page, "| {id} | {} | {} | {range} |", two.verdict, one.verdict);
     }
     page
 }

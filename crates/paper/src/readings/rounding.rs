@@ -74,11 +74,8 @@ pub struct Draw {
 }
 
 /// Half units of kinematic viscosity (m²/s) and density (kg/m³) of the oils.
-const LIQUIDS: [(&str, f64, f64); 3] = [
-    ("pump", 0.5e-6, 0.5),
-    ("gear", 0.5e-6, 0.5),
-    ("motor", 0.05e-6, 0.05),
-];
+const LIQUIDS: [(&str, f64, f64); 3] =
+    [("pump", 0.5e-6, 0.5), ("gear", 0.5e-6, 0.5), ("motor", 0.05e-6, 0.05)];
 
 /// Prefactors of the oils' Poisson ratios and viscosities: their values at 1 m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,9 +112,7 @@ impl Draw {
             cubic_kg_s_m2: within(half::CUBIC_KG_S_M2),
             mass_kg: within(half::MASS_KG),
             radius_m: within(half::RADIUS_M),
-            oils: LIQUIDS
-                .map(|row| (row.0, WetOffsets::draw(&mut within, row)))
-                .to_vec(),
+            oils: LIQUIDS.map(|row| (row.0, WetOffsets::draw(&mut within, row))).to_vec(),
         }
     }
 
@@ -154,11 +149,7 @@ impl Draw {
     /// The cubic law with its drawn coefficient, in place of the printed one.
     fn cubic(&self, name: &str) -> Option<std::sync::Arc<dyn hertzchain_chain::laws::Law>> {
         let coefficient_kg_s_m2 = PRINTED_CUBIC_KG_S_M2 + self.cubic_kg_s_m2;
-        (name == "damping_cubic").then(|| {
-            law(DampingCubic {
-                coefficient_kg_s_m2,
-            })
-        })
+        (name == "damping_cubic").then(|| law(DampingCubic { coefficient_kg_s_m2 }))
     }
 
     fn change_bead(&self, bead: &mut Bead) {
@@ -169,10 +160,7 @@ impl Draw {
 
     fn change_far_end(&self, far: &mut FarEnd) {
         match far {
-            FarEnd::HalfBead { radius_m, material }
-            | FarEnd::Stop {
-                radius_m, material, ..
-            } => {
+            FarEnd::HalfBead { radius_m, material } | FarEnd::Stop { radius_m, material, .. } => {
                 *radius_m += self.radius_m;
                 self.change_steel(material);
             }
@@ -186,10 +174,7 @@ impl Draw {
     fn change_steel(&self, material: &mut Material) {
         material.young_modulus_pa += self.young_modulus_pa;
         material.poisson_ratio += self.poisson_ratio;
-        for viscosity in [
-            &mut material.shear_viscosity_pa_s,
-            &mut material.bulk_viscosity_pa_s,
-        ] {
+        for viscosity in [&mut material.shear_viscosity_pa_s, &mut material.bulk_viscosity_pa_s] {
             // A chain without viscosity, or without bulk viscosity, stays so.
             if *viscosity > 0.0 {
                 *viscosity += self.viscosity_pa_s;
@@ -292,9 +277,7 @@ pub(super) fn sharpened(
     let mut evidence = Evidence::default();
     for accuracy in accuracies {
         evidence = gather(*accuracy)?;
-        let mut findings = evaluators
-            .iter()
-            .map(|evaluator| evaluator.decide(&evidence));
+        let mut findings = evaluators.iter().map(|evaluator| evaluator.decide(&evidence));
         if !findings.any(|finding| finding.is_open()) {
             break;
         }

@@ -35,9 +35,8 @@ impl Row {
     #[must_use]
     pub fn against(&self, other: &Self) -> (Vec<usize>, Vec<usize>) {
         let scores = self.verdicts.iter().zip(&other.verdicts).enumerate();
-        let changes: Vec<(usize, f64)> = scores
-            .map(|(i, (a, b))| (i, a.score() - b.score()))
-            .collect();
+        let changes: Vec<(usize, f64)> =
+            scores.map(|(i, (a, b))| (i, a.score() - b.score())).collect();
         let of = |better: bool| {
             let wanted = changes.iter().filter(|(_, change)| match better {
                 true => *change > 0.0,
@@ -118,11 +117,7 @@ pub fn scan(
     let start = best(single.iter().chain(&product).chain([&default])).clone();
     let search = scanner.climb(start)?;
     Ok(Scan {
-        claims: scanner
-            .evaluators
-            .into_iter()
-            .map(|evaluator| evaluator.claim)
-            .collect(),
+        claims: scanner.evaluators.into_iter().map(|evaluator| evaluator.claim).collect(),
         default,
         single,
         product_of,
@@ -182,21 +177,15 @@ impl Scan {
     pub(crate) fn prices(&self) -> Vec<Price> {
         let open = self.default.verdicts.iter().enumerate();
         let open = open.filter(|(_, verdict)| **verdict != Verdict::Holds);
-        open.map(|(claim, verdict)| self.price(claim, *verdict))
-            .collect()
+        open.map(|(claim, verdict)| self.price(claim, *verdict)).collect()
     }
 
     fn price(&self, claim: usize, verdict: Verdict) -> Price {
         let score = |row: &&Row| row.verdicts.get(claim).map_or(0.0, |v| v.score());
         let most = self.rows().map(|row| score(&row)).fold(0.0, f64::max);
-        let better = self
-            .rows()
-            .filter(|row| score(row) == most && most > verdict.score());
+        let better = self.rows().filter(|row| score(row) == most && most > verdict.score());
         let row = better.reduce(|a, b| if closer(b, a) { b } else { a });
-        Price {
-            claim,
-            row: row.cloned(),
-        }
+        Price { claim, row: row.cloned() }
     }
 }
 
@@ -207,9 +196,7 @@ fn closer(one: &Row, other: &Row) -> bool {
 }
 
 fn best<'a>(rows: impl IntoIterator<Item = &'a Row>) -> &'a Row {
-    let best = rows
-        .into_iter()
-        .reduce(|a, b| if closer(b, a) { b } else { a });
+    let best = rows.into_iter().reduce(|a, b| if closer(b, a) { b } else { a });
     best.expect("the default reading is always among the rows")
 }
 
@@ -218,9 +205,7 @@ fn singles(from: &Reading) -> Vec<Reading> {
     let options = Reading::switches().iter();
     let options = options.flat_map(|switch| switch.options.iter().map(|o| (switch.name, *o)));
     let changed = options.filter(|(name, option)| from.get(name) != Some(option));
-    changed
-        .filter_map(|(name, option)| from.with(name, option).ok())
-        .collect()
+    changed.filter_map(|(name, option)| from.with(name, option).ok()).collect()
 }
 
 /// A switch with the options that move a verdict, the default first.
@@ -265,9 +250,7 @@ fn product(factors: &[SwitchOptions]) -> Vec<Reading> {
     let start = vec![Reading::default()];
     factors.iter().fold(start, |readings, (switch, options)| {
         let with = |reading: &Reading| {
-            let each = options
-                .iter()
-                .filter_map(|option| reading.with(switch, option).ok());
+            let each = options.iter().filter_map(|option| reading.with(switch, option).ok());
             each.collect::<Vec<_>>()
         };
         readings.iter().flat_map(with).collect()
@@ -294,16 +277,9 @@ impl Scanner<'_> {
             };
             gather_cached(&how, &self.cache)
         })?;
-        let findings = self
-            .evaluators
-            .iter()
-            .map(|evaluator| evaluator.decide(&evidence));
+        let findings = self.evaluators.iter().map(|evaluator| evaluator.decide(&evidence));
         let (verdicts, values) = findings.map(|f| (f.verdict, f.value)).unzip();
-        Ok(Row {
-            reading: *reading,
-            verdicts,
-            values,
-        })
+        Ok(Row { reading: *reading, verdicts, values })
     }
 
     fn rows(&self, readings: &[Reading]) -> Result<Vec<Row>, ReproduceError> {
@@ -320,8 +296,7 @@ impl Scanner<'_> {
         let mut tried = Vec::new();
         loop {
             let readings = singles(&at.reading);
-            self.progress
-                .begin("readings, towards the paper", readings.len() as u64);
+            self.progress.begin("readings, towards the paper", readings.len() as u64);
             let rows = self.rows(&readings)?;
             let next = best(rows.iter().chain([&at])).clone();
             tried.extend(rows);

@@ -13,14 +13,7 @@ pub const SPEEDS_M_S: [f64; 31] = [
 ];
 
 /// The paper's chains, in the order of the tables.
-pub const CASES: [&str; 6] = [
-    "hertz",
-    "hertz-viscoelastic",
-    "dry",
-    "pump",
-    "gear",
-    "motor",
-];
+pub const CASES: [&str; 6] = ["hertz", "hertz-viscoelastic", "dry", "pump", "gear", "motor"];
 
 /// The wet ones.
 pub const OILS: [&str; 3] = ["pump", "gear", "motor"];
@@ -109,9 +102,5 @@ pub enum ReproduceError {
 }
 
 pub(crate) fn failed(case: &str, speed_m_s: f64, error: StudyError) -> ReproduceError {
-    ReproduceError::Shot {
-        case: case.to_owned(),
-        speed_m_s,
-        error: Box::new(error),
-    }
+    ReproduceError::Shot { case: case.to_owned(), speed_m_s, error: Box::new(error) }
 }

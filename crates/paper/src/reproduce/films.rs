@@ -9,12 +9,8 @@ use hertzchain_sim::shoot;
 use rayon::prelude::*;
 
 /// Case and speed in m/s of the four panels of the paper's Fig. 2.
-const SIGNAL_SHOTS: [(&str, f64); 4] = [
-    ("dry", 0.1368),
-    ("pump", 1.152),
-    ("gear", 0.1396),
-    ("motor", 0.3993),
-];
+const SIGNAL_SHOTS: [(&str, f64); 4] =
+    [("dry", 0.1368), ("pump", 1.152), ("gear", 0.1396), ("motor", 0.3993)];
 
 /// One dry and one wet shot that are followed bead by bead, at the same
 /// speed: that of the split pulse of the paper's Fig. 2 (d).
@@ -64,10 +60,7 @@ const FILM_ACCURACY: f64 = 1e-9;
 /// # Errors
 /// The first shot that can't be computed.
 pub(super) fn signals(cases: &Cases, accuracy: f64) -> Result<Vec<SignalShot>, ReproduceError> {
-    SIGNAL_SHOTS
-        .par_iter()
-        .map(|(case, speed)| signal(cases, case, *speed, accuracy))
-        .collect()
+    SIGNAL_SHOTS.par_iter().map(|(case, speed)| signal(cases, case, *speed, accuracy)).collect()
 }
 
 fn signal(
@@ -84,10 +77,7 @@ fn signal(
     let trace = shot.trace.unwrap_or_default();
     let peaks = shot.passage.map_or(Vec::new(), |p| {
         let all = [Some(p.incident), Some(p.wall), p.reflected];
-        all.into_iter()
-            .flatten()
-            .map(|peak| (peak.time_s, peak.value))
-            .collect()
+        all.into_iter().flatten().map(|peak| (peak.time_s, peak.value)).collect()
     });
     Ok(SignalShot {
         case: case.to_owned(),
@@ -103,10 +93,7 @@ fn signal(
 /// # Errors
 /// The first shot that can't be computed.
 pub(super) fn films(cases: &Cases) -> Result<Vec<Film>, ReproduceError> {
-    FILM_SHOTS
-        .par_iter()
-        .map(|(case, speed)| film(cases, case, *speed))
-        .collect()
+    FILM_SHOTS.par_iter().map(|(case, speed)| film(cases, case, *speed)).collect()
 }
 
 fn film(cases: &Cases, case: &str, speed_m_s: f64) -> Result<Film, ReproduceError> {

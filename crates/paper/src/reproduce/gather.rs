@@ -88,10 +88,7 @@ fn gathered(
         .all()
         .iter()
         .zip(curves)
-        .map(|((case, _), points)| Curve {
-            case: (*case).to_owned(),
-            points: points.to_vec(),
-        });
+        .map(|((case, _), points)| Curve { case: (*case).to_owned(), points: points.to_vec() });
     Ok(Evidence {
         curves: curves.collect(),
         oils: cases.oils(),
@@ -136,34 +133,22 @@ impl ShotTarget {
         let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
         let asks = |what: fn(&Evaluator, &str, f64) -> bool| match how.effort {
             Effort::Checked => true,
-            Effort::Lean(evaluators) => evaluators
-                .iter()
-                .any(|evaluator| what(evaluator, case, speed_m_s)),
+            Effort::Lean(evaluators) => {
+                evaluators.iter().any(|evaluator| what(evaluator, case, speed_m_s))
+            }
         };
         let closing = asks(Evaluator::needs_closing);
         let followed = closing || asks(Evaluator::needs_end);
-        let ends = vec![
-            Sensor::Position(1),
-            Sensor::Position(plan.chain.beads.len()),
-        ];
+        let ends = vec![Sensor::Position(1), Sensor::Position(plan.chain.beads.len())];
         let plan = match followed {
             true => plan.watching(ends, Some(SAMPLED_S)),
             false => plan.for_flights(),
         };
-        Ok(Self {
-            case,
-            speed_m_s,
-            pick: plan.pick,
-            closing,
-            plan,
-        })
+        Ok(Self { case, speed_m_s, pick: plan.pick, closing, plan })
     }
 
     fn comparing_picks(self) -> Self {
-        Self {
-            plan: self.plan.comparing_picks(),
-            ..self
-        }
+        Self { plan: self.plan.comparing_picks(), ..self }
     }
 
     /// The point of the target's own pick.
@@ -181,9 +166,7 @@ impl ShotTarget {
         let mut points = read_off_all(&self.plan, self.speed_m_s, &shot);
         if self.closing {
             let excess_s = excess_s(&self.plan, &shot).map_err(|error| self.failed(error))?;
-            points
-                .iter_mut()
-                .for_each(|point| point.excess_s = excess_s);
+            points.iter_mut().for_each(|point| point.excess_s = excess_s);
         }
         Ok(points)
     }
@@ -217,9 +200,7 @@ fn shot_at(
         points[at] = Some(fresh);
     }
     let points = targets.iter().zip(points);
-    Ok(points
-        .filter_map(|(target, points)| target.own(points?))
-        .collect())
+    Ok(points.filter_map(|(target, points)| target.own(points?)).collect())
 }
 
 fn checked_points(
@@ -229,9 +210,7 @@ fn checked_points(
     let one = |(_, target): &(usize, &ShotTarget)| {
         let point = checked(&target.plan, target.speed_m_s);
         done();
-        point
-            .map(|point| vec![point])
-            .map_err(|error| target.failed(error))
+        point.map(|point| vec![point]).map_err(|error| target.failed(error))
     };
     targets.par_iter().map(one).collect()
 }
@@ -254,12 +233,10 @@ fn lean_points(
         points
     };
     let mut followed = followed.par_iter().map(one).collect::<Vec<_>>().into_iter();
-    let in_order = targets
-        .iter()
-        .filter_map(|(_, target)| match target.plan.rebound {
-            true => followed.next(),
-            false => Some(target.points(passing.next()?)),
-        });
+    let in_order = targets.iter().filter_map(|(_, target)| match target.plan.rebound {
+        true => followed.next(),
+        false => Some(target.points(passing.next()?)),
+    });
     in_order.collect()
 }
 

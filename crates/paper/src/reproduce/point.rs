@@ -39,10 +39,7 @@ pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> 
         let plan = plan.clone().with_accuracy(accuracy);
         let shot = shoot(&plan)?;
         let point = read_off(&plan, speed_m_s, &shot);
-        Ok::<_, StudyError>(Point {
-            excess_s: excess_s(&plan, &shot)?,
-            ..point
-        })
+        Ok::<_, StudyError>(Point { excess_s: excess_s(&plan, &shot)?, ..point })
     };
     let mut accuracy = plan.accuracy;
     let mut point = at(accuracy)?;
@@ -176,13 +173,7 @@ fn loosened(shot: &Shot) -> Option<f64> {
     let (trace, passage) = (shot.trace.as_ref()?, shot.passage.as_ref().ok()?);
     let until = passage.wall.time_s + 3.0 * passage.tof_incident_s();
     let seen = trace.time_s.partition_point(|time| *time <= until);
-    let at = |column: usize| {
-        trace
-            .columns
-            .get(column)?
-            .get(seen.checked_sub(1)?)
-            .copied()
-    };
+    let at = |column: usize| trace.columns.get(column)?.get(seen.checked_sub(1)?).copied();
     Some(at(1)? - at(0)?)
 }
 

@@ -101,18 +101,13 @@ fn listed(provenance: &Path) -> Vec<String> {
     let ours = value.get("program").and_then(Value::as_str) == Some(PROGRAM);
     let files = value.get("files").filter(|_| ours);
     let names = files.and_then(Value::as_array).into_iter().flatten();
-    names
-        .filter_map(|name| Some(name.as_str()?.to_owned()))
-        .collect()
+    names.filter_map(|name| Some(name.as_str()?.to_owned())).collect()
 }
 
 /// Whether a name is that of a file in the folder itself, not a way out of it.
 fn is_plain(name: &str) -> bool {
     let mut parts = Path::new(name).components();
-    matches!(
-        (parts.next(), parts.next()),
-        (Some(Component::Normal(_)), None)
-    )
+    matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None))
 }
 
 /// Receives the progress of a long computation; may be called from any thread.

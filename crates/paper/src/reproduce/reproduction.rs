@@ -33,12 +33,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self {
-            accuracy: 1e-8,
-            seed: 1,
-            draws: 64,
-            readings: 0,
-        }
+        Self { accuracy: 1e-8, seed: 1, draws: 64, readings: 0 }
     }
 }
 
@@ -46,11 +41,7 @@ impl Options {
     /// With the scan over readings, and draws enough to see rare flips.
     #[must_use]
     pub fn with_readings(self) -> Self {
-        Self {
-            draws: 200,
-            readings: usize::MAX,
-            ..self
-        }
+        Self { draws: 200, readings: usize::MAX, ..self }
     }
 }
 
@@ -116,11 +107,7 @@ pub fn reproduce(
             let mut scan = scan(most, &SPEEDS_M_S, SCAN_ACCURACY, progress)?;
             scan.flipped_by_rounding = flipped(&verdicts);
             let closest = scan.closest().reading;
-            let how = Gathering {
-                reading: closest,
-                accuracy: SCAN_ACCURACY,
-                ..how
-            };
+            let how = Gathering { reading: closest, accuracy: SCAN_ACCURACY, ..how };
             let evidence = gather(&how, &|_, _, _| {}, &|| {})?;
             let rounded = evaluated(options, (&closest, one_digit), &evidence, progress)?;
             scan.flipped_in_closest = flipped(&rounded);
@@ -199,10 +186,7 @@ impl Reproduction {
             ("tof.csv", tof_csv(&self.evidence)),
             ("ratios.csv", ratios_csv(&self.evidence)),
             ("power_laws.csv", power_laws_csv(&self.evidence)),
-            (
-                "power_law_residuals.csv",
-                power_law_residuals_csv(&self.evidence),
-            ),
+            ("power_law_residuals.csv", power_law_residuals_csv(&self.evidence)),
             ("oils.csv", oils_csv(&self.cases)?),
             (
                 "claims.json",
@@ -212,10 +196,7 @@ impl Reproduction {
                     "claims": claims_json(&self.evaluated),
                 })),
             ),
-            (
-                "claims.md",
-                claims_markdown(&self.evaluated, &head(&reading)),
-            ),
+            ("claims.md", claims_markdown(&self.evaluated, &head(&reading))),
         ];
         if let Some(scan) = &self.scan {
             files.push(("readings.csv", scan_csv(scan)));

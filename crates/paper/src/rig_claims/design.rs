@@ -110,11 +110,7 @@ impl Rig {
     /// As the paper's preset, with another of its cases.
     #[must_use]
     pub fn with_case(case: usize, name: &str) -> Self {
-        Self {
-            name: format!("as the preset, {name}"),
-            case,
-            ..Self::usual()
-        }
+        Self { name: format!("as the preset, {name}"), case, ..Self::usual() }
     }
 
     /// As the preset but for one factor, by its place.
@@ -136,11 +132,7 @@ impl Rig {
         let values = [0, 1, 2, 3].map(value);
         let names = FACTORS.iter().zip(values);
         let names: Vec<String> = names.map(|(factor, value)| factor.amount(value)).collect();
-        Self {
-            name: names.join(", "),
-            values,
-            case: 0,
-        }
+        Self { name: names.join(", "), values, case: 0 }
     }
 }
 
@@ -168,10 +160,7 @@ impl Design {
     pub fn about(experiment: Experiment) -> Self {
         let mut rigs = vec![Rig::usual()];
         for (at, factor) in FACTORS.iter().enumerate() {
-            let other = factor
-                .levels
-                .iter()
-                .filter(|level| **level != factor.usual());
+            let other = factor.levels.iter().filter(|level| **level != factor.usual());
             rigs.extend(other.map(|level| Rig::but(at, *level)));
         }
         rigs.push(Rig::but(PUSH, 0.0));
@@ -179,13 +168,7 @@ impl Design {
         rigs.extend(corners.map(|bits| Rig::corner([0, 1, 2, 3].map(|at| bits >> at & 1 == 1))));
         let cases = experiment.cases().into_iter().enumerate().skip(1);
         rigs.extend(cases.map(|(case, name)| Rig::with_case(case, name)));
-        Self {
-            experiment,
-            rigs,
-            speeds: 20,
-            shots: 8,
-            first: 2,
-        }
+        Self { experiment, rigs, speeds: 20, shots: 8, first: 2 }
     }
 
     /// The experiment of a rig with this many taps; every striker has exactly the

@@ -45,10 +45,7 @@ impl Evidence {
     /// The evidence of each of the rigs alone.
     pub fn alone(&self) -> impl Iterator<Item = Self> + '_ {
         let all = self.rigs.iter().chain(&self.wet);
-        all.map(|observed| Self {
-            rigs: vec![observed.clone()],
-            wet: Vec::new(),
-        })
+        all.map(|observed| Self { rigs: vec![observed.clone()], wet: Vec::new() })
     }
 }
 
@@ -101,10 +98,7 @@ impl Observed {
         let exponent = law.map_or(f64::NAN, |law| law.exponent);
         let scatter = move |(at, mean_s): (_, f64)| {
             let at: &AtSpeed = at;
-            (
-                at,
-                (exponent * mean_s / at.speed_m_s).abs() * SPEED_SCATTER_M_S,
-            )
+            (at, (exponent * mean_s / at.speed_m_s).abs() * SPEED_SCATTER_M_S)
         };
         self.speeds.iter().zip(means_s).map(scatter)
     }
@@ -143,10 +137,7 @@ pub(super) fn deviation(values: &[f64]) -> f64 {
 
 /// Mean of what shots have, with its error.
 pub(super) fn mean_of(values: &[f64]) -> Estimate {
-    Estimate {
-        value: mean(values),
-        error: SURE * deviation(values) / (values.len() as f64).sqrt(),
-    }
+    Estimate { value: mean(values), error: SURE * deviation(values) / (values.len() as f64).sqrt() }
 }
 
 /// ln of the geometric mean of a number that series have, with its error. Series
@@ -178,11 +169,7 @@ fn bootstrap(of_series: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Estimate {
     let alone = of_series.len() < 2;
     Estimate {
         value: statistic(of_series),
-        error: if alone {
-            f64::NAN
-        } else {
-            SURE * deviation(&draws)
-        },
+        error: if alone { f64::NAN } else { SURE * deviation(&draws) },
     }
 }
 
@@ -222,14 +209,8 @@ pub fn observe(design: &Design, progress: &dyn Progress) -> Result<Evidence, Rig
             Ok((*rig, at))
         })
         .collect();
-    let mut rigs: Vec<Observed> = design
-        .rigs
-        .iter()
-        .map(|rig| Observed {
-            rig: rig.clone(),
-            speeds: Vec::new(),
-        })
-        .collect();
+    let mut rigs: Vec<Observed> =
+        design.rigs.iter().map(|rig| Observed { rig: rig.clone(), speeds: Vec::new() }).collect();
     for (rig, at) in seen? {
         rigs[rig].speeds.push(at);
     }

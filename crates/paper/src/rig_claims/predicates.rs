@@ -92,10 +92,7 @@ fn return_longer(claim: &Claim, evidence: &Evidence) -> Finding {
             Branch::BOTH.map(|branch| mean_of(&each(&at.tapped, |shot| tof_s(shot, branch))));
         let value = reflected.value / incident.value;
         let relative = incident.error / incident.value + reflected.error / reflected.value;
-        Estimate {
-            value,
-            error: value * relative,
-        }
+        Estimate { value, error: value * relative }
     })
 }
 
@@ -132,9 +129,8 @@ fn a_rig_each(
     for observed in &evidence.rigs {
         let log = log_of(observed);
         let (margin, value) = (log.value - claim.threshold.ln(), log.value.exp());
-        comparisons.compare(margin, log.error, value, value * log.error, || {
-            observed.rig.name.clone()
-        });
+        comparisons
+            .compare(margin, log.error, value, value * log.error, || observed.rig.name.clone());
     }
     comparisons.finding()
 }

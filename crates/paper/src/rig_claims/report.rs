@@ -74,9 +74,8 @@ impl RigClaims {
     pub fn json(&self) -> Value {
         let rigs = self.rigs.iter().map(|(rig, evaluated)| {
             let values = FACTORS.iter().zip(rig.values);
-            let values: Map<String, Value> = values
-                .map(|(factor, value)| (factor.path.to_owned(), json!(value)))
-                .collect();
+            let values: Map<String, Value> =
+                values.map(|(factor, value)| (factor.path.to_owned(), json!(value))).collect();
             json!({ "rig": rig.name, "values_si": values, "claims": claims_json(evaluated) })
         });
         json!({

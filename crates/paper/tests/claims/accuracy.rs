@@ -72,10 +72,7 @@ struct Signs(u64);
 
 impl Signs {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         if self.0 >> 63 == 0 { 1.0 } else { -1.0 }
     }
 
@@ -84,11 +81,7 @@ impl Signs {
         for tof in [&mut p.tof_incident_s, &mut p.tof_reflected_s] {
             *tof *= 1.0 + self.next() * p.accuracy_reached;
         }
-        for peak in [
-            &mut p.sensor_peak_n,
-            &mut p.wall_peak_n,
-            &mut p.returning_peak_n,
-        ] {
+        for peak in [&mut p.sensor_peak_n, &mut p.wall_peak_n, &mut p.returning_peak_n] {
             *peak *= 1.0 + self.next() * p.peak_accuracy;
         }
         p.second_returning_peak_n += self.next() * p.second_peak_accuracy_n;

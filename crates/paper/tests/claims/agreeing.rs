@@ -3,9 +3,8 @@
 use hertzchain_paper::claims::{Branch, Curve, Digitised, Evidence, Measured, Oil, Point};
 
 /// Speeds in m/s.
-const SPEEDS_M_S: [f64; 12] = [
-    0.075, 0.1, 0.1396, 0.2, 0.28, 0.3993, 0.5, 0.6, 0.75, 1.0, 1.152, 1.23,
-];
+const SPEEDS_M_S: [f64; 12] =
+    [0.075, 0.1, 0.1396, 0.2, 0.28, 0.3993, 0.5, 0.6, 0.75, 1.0, 1.152, 1.23];
 
 fn point(speed_m_s: f64, incident_s: f64, reflected_s: f64) -> Point {
     Point {
@@ -37,10 +36,7 @@ fn curve(case: &str, tofs: impl Fn(f64) -> (f64, f64)) -> Curve {
         let (incident, reflected) = tofs(v);
         point(v, incident, reflected)
     });
-    Curve {
-        case: case.to_owned(),
-        points: points.to_vec(),
-    }
+    Curve { case: case.to_owned(), points: points.to_vec() }
 }
 
 pub fn dry(v: f64) -> (f64, f64) {
@@ -63,21 +59,11 @@ fn wet(case: &str, level: f64, lifted_m_s: f64) -> Curve {
 }
 
 fn oil(case: &str, kinematic_viscosity_m2_s: f64, density_kg_m3: f64) -> Oil {
-    Oil {
-        case: case.to_owned(),
-        kinematic_viscosity_m2_s,
-        density_kg_m3,
-    }
+    Oil { case: case.to_owned(), kinematic_viscosity_m2_s, density_kg_m3 }
 }
 
 fn measured(what: Measured, case: &str, value: f64, standard_error: f64) -> Digitised {
-    Digitised {
-        what,
-        case: case.to_owned(),
-        speed_m_s: 0.1,
-        value,
-        standard_error,
-    }
+    Digitised { what, case: case.to_owned(), speed_m_s: 0.1, value, standard_error }
 }
 
 /// Numbers made up so that everything the paper says is true.
@@ -86,9 +72,7 @@ pub fn agreeing() -> Evidence {
     Evidence {
         curves: vec![
             curve("hertz", |v| (630e-6 * v.powf(-0.2), 632e-6 * v.powf(-0.2))),
-            curve("hertz-viscoelastic", |v| {
-                (657e-6 * v.powf(-0.194), 688e-6 * v.powf(-0.187))
-            }),
+            curve("hertz-viscoelastic", |v| (657e-6 * v.powf(-0.194), 688e-6 * v.powf(-0.187))),
             curve("dry", dry),
             wet("pump", 1.0, 0.075),
             wet("gear", 0.97, 0.075),
@@ -103,18 +87,8 @@ pub fn agreeing() -> Evidence {
         digitised: vec![
             measured(Measured::SensorOverWall, "dry", sensor_over_wall, 0.01),
             measured(Measured::Tof(Branch::Incident), "dry", dry(0.1).0, 1e-6),
-            measured(
-                Measured::Tof(Branch::Reflected),
-                "dry",
-                dry(0.1).1 + 5e-7,
-                1e-6,
-            ),
-            measured(
-                Measured::Ratio,
-                "gear",
-                0.97 * (0.1_f64 / 1.1).powf(0.004),
-                1e-3,
-            ),
+            measured(Measured::Tof(Branch::Reflected), "dry", dry(0.1).1 + 5e-7, 1e-6),
+            measured(Measured::Ratio, "gear", 0.97 * (0.1_f64 / 1.1).powf(0.004), 1e-3),
         ],
     }
 }

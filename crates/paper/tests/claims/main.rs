@@ -1,10 +1,6 @@
 //! Verdicts follow from numbers: on numbers made to agree with the paper every
 //! claim holds, and each can be made to fail by changing them.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test that cannot go on should fail"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 mod accuracy;
 mod agreeing;
@@ -19,9 +15,7 @@ use hertzchain_paper::claims::{
 
 fn evaluator(id: &str) -> Evaluator {
     let all = claims().unwrap();
-    all.into_iter()
-        .find(|evaluator| evaluator.claim.id == id)
-        .unwrap()
+    all.into_iter().find(|evaluator| evaluator.claim.id == id).unwrap()
 }
 
 fn decide(id: &str, evidence: &Evidence) -> Finding {
@@ -33,12 +27,7 @@ fn every_claim_holds_on_numbers_that_agree_with_the_paper() {
     let evidence = agreeing();
     for evaluator in claims().unwrap() {
         let finding = evaluator.decide(&evidence);
-        assert_eq!(
-            finding.verdict,
-            Verdict::Holds,
-            "{}: {finding:?}",
-            evaluator.claim.id
-        );
+        assert_eq!(finding.verdict, Verdict::Holds, "{}: {finding:?}", evaluator.claim.id);
     }
 }
 
@@ -51,10 +40,7 @@ fn every_verdict_flips_when_its_numbers_change() {
         let mut evidence = agreeing();
         change(&mut evidence);
         let verdict = evaluator.decide(&evidence).verdict;
-        assert!(
-            matches!(verdict, Verdict::Fails | Verdict::InPart),
-            "{id}: {verdict}"
-        );
+        assert!(matches!(verdict, Verdict::Fails | Verdict::InPart), "{id}: {verdict}");
     }
 }
 
@@ -78,11 +64,7 @@ fn what_a_claim_says_it_needs_is_what_decides_it() {
         change(&mut evidence);
         let broken = evaluator.decide(&evidence);
         let by_upper_bound = claim.at_most.is_some_and(|most| broken.value > most);
-        assert!(
-            !on_the_right_side(claim, &broken) || by_upper_bound,
-            "{}: {broken:?}",
-            claim.id
-        );
+        assert!(!on_the_right_side(claim, &broken) || by_upper_bound, "{}: {broken:?}", claim.id);
     }
 }
 
@@ -91,18 +73,8 @@ fn only_numbers_that_the_paper_prints_have_a_deviation() {
     for evaluator in claims().unwrap() {
         let finding = evaluator.decide(&agreeing());
         let printed = !evaluator.claim.expected.is_empty();
-        assert_eq!(
-            finding.expected.is_some(),
-            printed,
-            "{}",
-            evaluator.claim.id
-        );
-        assert_eq!(
-            evaluator.claim.needs == Needs::Within,
-            printed,
-            "{}",
-            evaluator.claim.id
-        );
+        assert_eq!(finding.expected.is_some(), printed, "{}", evaluator.claim.id);
+        assert_eq!(evaluator.claim.needs == Needs::Within, printed, "{}", evaluator.claim.id);
     }
 }
 
@@ -184,15 +156,10 @@ fn gaps_of_more_than_a_millimetre_are_no_small_gaps() {
 
 #[test]
 fn loosening_that_makes_little_of_the_difference_holds_in_part() {
-    for (share, verdict) in [
-        (0.6, Verdict::Holds),
-        (0.3, Verdict::InPart),
-        (0.01, Verdict::Fails),
-    ] {
+    for (share, verdict) in [(0.6, Verdict::Holds), (0.3, Verdict::InPart), (0.01, Verdict::Fails)]
+    {
         let mut evidence = agreeing();
-        each(&mut evidence, "dry", |p| {
-            p.excess_s[1] = (1.0 - share) * p.excess_s[0]
-        });
+        each(&mut evidence, "dry", |p| p.excess_s[1] = (1.0 - share) * p.excess_s[0]);
         let finding = decide("loosening", &evidence);
         assert_eq!(finding.verdict, verdict, "{share}: {finding:?}");
         // Rounding of a difference.
@@ -202,20 +169,13 @@ fn loosening_that_makes_little_of_the_difference_holds_in_part() {
 
 #[test]
 fn a_split_that_the_figure_could_just_show_holds_in_part() {
-    for (second, verdict) in [
-        (0.6, Verdict::Holds),
-        (0.2, Verdict::InPart),
-        (0.02, Verdict::Fails),
-    ] {
+    for (second, verdict) in [(0.6, Verdict::Holds), (0.2, Verdict::InPart), (0.02, Verdict::Fails)]
+    {
         let mut evidence = agreeing();
         each(&mut evidence, "motor", |p| {
             p.second_returning_peak_n = second * p.returning_peak_n;
         });
-        assert_eq!(
-            decide("motor-split", &evidence).verdict,
-            verdict,
-            "{second}"
-        );
+        assert_eq!(decide("motor-split", &evidence).verdict, verdict, "{second}");
     }
 }
 
@@ -236,10 +196,7 @@ fn a_claim_that_more_speeds_break_than_meet_fails() {
 
 #[test]
 fn claims_without_numbers_are_not_decidable() {
-    let nothing = Evidence {
-        viscosity_over_modulus_s: f64::NAN,
-        ..Evidence::default()
-    };
+    let nothing = Evidence { viscosity_over_modulus_s: f64::NAN, ..Evidence::default() };
     for evaluator in claims().unwrap() {
         let verdict = evaluator.decide(&nothing).verdict;
         assert_eq!(verdict, Verdict::NotDecidable, "{}", evaluator.claim.id);
@@ -253,10 +210,7 @@ fn a_difference_within_the_accuracy_decides_nothing() {
         p.tof_incident_s = dry(p.speed_m_s).0 * (1.0 + 1e-7);
         p.accuracy_reached = 1e-6;
     });
-    assert_eq!(
-        decide("motor-above", &evidence).verdict,
-        Verdict::NotDecidable
-    );
+    assert_eq!(decide("motor-above", &evidence).verdict, Verdict::NotDecidable);
 }
 
 #[test]
@@ -265,10 +219,7 @@ fn a_crossing_elsewhere_is_one_crossing_with_a_speed_and_not_that_of_the_paper()
     each(&mut evidence, "pump", |p| {
         p.tof_incident_s = dry(p.speed_m_s).0 * (p.speed_m_s / 0.53).powf(0.02);
     });
-    assert_eq!(
-        decide("pump-crosses-once", &evidence).verdict,
-        Verdict::Holds
-    );
+    assert_eq!(decide("pump-crosses-once", &evidence).verdict, Verdict::Holds);
     let finding = decide("pump-crossing", &evidence);
     assert_eq!(finding.verdict, Verdict::Fails);
     // The ratio is linear in ln v up to 0.02² over the interval.
@@ -282,10 +233,7 @@ fn a_ratio_that_is_1_within_its_accuracy_crosses_nowhere_for_sure() {
         p.tof_incident_s = dry(p.speed_m_s).0 * (1.0 + 1e-7 * p.speed_m_s.ln());
         p.accuracy_reached = 1e-6;
     });
-    assert_eq!(
-        decide("pump-crosses-once", &evidence).verdict,
-        Verdict::NotDecidable
-    );
+    assert_eq!(decide("pump-crosses-once", &evidence).verdict, Verdict::NotDecidable);
 }
 
 #[test]
@@ -295,18 +243,12 @@ fn a_verdict_that_one_draw_changes_is_not_decidable_and_has_a_range() {
     draw.viscosity_over_modulus_s = 1.6e-7;
     let draws = [printed.clone(), draw];
     let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &draws);
-    let relaxation = evaluated
-        .iter()
-        .find(|j| j.claim.id == "relaxation-time")
-        .unwrap();
+    let relaxation = evaluated.iter().find(|j| j.claim.id == "relaxation-time").unwrap();
     assert_eq!(relaxation.finding.verdict, Verdict::Holds);
     assert_eq!(relaxation.verdict, Verdict::NotDecidable);
     let rounded = relaxation.rounded.as_ref().unwrap();
     assert_eq!(rounded.range, Some((1.5e-7, 1.6e-7)));
-    let other = evaluated
-        .iter()
-        .find(|j| j.claim.id == "gear-below")
-        .unwrap();
+    let other = evaluated.iter().find(|j| j.claim.id == "gear-below").unwrap();
     assert_eq!(other.verdict, Verdict::Holds);
 }
 

@@ -17,10 +17,7 @@ pub(super) fn experiment(experiment: &Experiment, chain: &Chain) -> Group {
     };
     group.text("solver", method);
     group.number("accuracy asked of times of flight", solver.accuracy, "");
-    solver
-        .step_s
-        .into_iter()
-        .for_each(|step| group.number("step", step, "s"));
+    solver.step_s.into_iter().for_each(|step| group.number("step", step, "s"));
     match solver.duration_s {
         Some(duration) => group.number("duration", duration, "s"),
         None => group.text("duration", "until the reflected pulse has passed"),
@@ -28,9 +25,7 @@ pub(super) fn experiment(experiment: &Experiment, chain: &Chain) -> Group {
     if let Some(liquid) = experiment.liquid() {
         group.text("liquid", liquid.name.clone());
         let viscosity = liquid.dynamic_viscosity_pa_s();
-        viscosity
-            .into_iter()
-            .for_each(|eta| group.number("its dynamic viscosity", eta, "Pa s"));
+        viscosity.into_iter().for_each(|eta| group.number("its dynamic viscosity", eta, "Pa s"));
     }
     if chain.tension == Tension::Clipped {
         group.text("tension", "clipped: contacts never pull");
@@ -65,9 +60,7 @@ fn cell(beads: &[Bead]) -> Option<usize> {
     let repeats = |length: &usize| {
         beads.len() >= 2 * length && beads.iter().zip(&beads[*length..]).all(|(a, b)| a == b)
     };
-    (1..=LONGEST_CELL)
-        .find(repeats)
-        .filter(|length| *length > 1)
+    (1..=LONGEST_CELL).find(repeats).filter(|length| *length > 1)
 }
 
 fn list(group: &mut Group, beads: &[Bead]) {
@@ -123,10 +116,7 @@ fn material(parts: &mut Group, material: &Material) {
 pub(super) fn ends(chain: &Chain) -> Group {
     let mut group = Group::new("Ends");
     match &chain.start {
-        Start::Striker {
-            bead: ball,
-            speed_m_s,
-        } => {
+        Start::Striker { bead: ball, speed_m_s } => {
             group.parts("striker", bead(ball));
             group.number("its speed", *speed_m_s, "m/s");
         }
@@ -142,10 +132,7 @@ pub(super) fn ends(chain: &Chain) -> Group {
     match chain.push {
         Push::None => {}
         Push::Constant { force_n } => group.number("constant push on bead 1", force_n, "N"),
-        Push::Spring {
-            force_n,
-            stiffness_n_m,
-        } => {
+        Push::Spring { force_n, stiffness_n_m } => {
             group.number("spring push on bead 1", force_n, "N");
             group.number("stiffness of that spring", stiffness_n_m, "N/m");
         }
@@ -153,10 +140,7 @@ pub(super) fn ends(chain: &Chain) -> Group {
     if chain.incline_rad != 0.0 {
         group.number("incline", chain.incline_rad.to_degrees(), "°");
     }
-    chain
-        .suspension_m
-        .into_iter()
-        .for_each(|length| group.number("threads", length, "m"));
+    chain.suspension_m.into_iter().for_each(|length| group.number("threads", length, "m"));
     group.parts("far end", far(&chain.far));
     group
 }

@@ -6,19 +6,14 @@ use hertzchain_chain::{Chain, Material, Pair, Section};
 use hertzchain_experiment::{Experiment, LawSpec};
 
 pub(super) fn section(chain: &Chain, contact: usize) -> Option<&Section> {
-    chain
-        .sections
-        .iter()
-        .find(|section| section.contacts.contains(&contact))
+    chain.sections.iter().find(|section| section.contacts.contains(&contact))
 }
 
 /// Stiffness k and exponent n of F = k δⁿ, where one elastic power law acts.
 pub(super) fn elastic(chain: &Chain, contact: usize) -> Option<(f64, f64)> {
     let pair = chain.pair(contact)?;
     let laws = &section(chain, contact)?.laws;
-    let mut elastic = laws
-        .iter()
-        .filter(|law| law.info().nature != Nature::Dissipative);
+    let mut elastic = laws.iter().filter(|law| law.info().nature != Nature::Dissipative);
     let (law, more) = (elastic.next()?, elastic.next());
     if more.is_some() {
         return None;
@@ -39,9 +34,7 @@ pub(super) fn sections(experiment: &Experiment, chain: &Chain) -> Vec<Group> {
             let wet = if spec.wet { ", wet" } else { "" };
             let mut group = Group::new(format!("Contacts {first} to {last}{wet}"));
             let pairs: Vec<Pair> = unlike(chain, section.contacts.clone().collect());
-            spec.laws
-                .iter()
-                .for_each(|law| describe_law(&mut group, law, &pairs));
+            spec.laws.iter().for_each(|law| describe_law(&mut group, law, &pairs));
             group
         })
         .collect()
@@ -74,10 +67,7 @@ fn derived(group: &mut Group, law: &LawSpec, name: String, parameter: &str, pair
         _ => Material::relaxation_time_s,
     };
     let (values, unit): (Vec<f64>, _) = match parameter {
-        "stiffness" => (
-            pairs.iter().map(Pair::hertz_stiffness).collect(),
-            "N/m^(3/2)",
-        ),
+        "stiffness" => (pairs.iter().map(Pair::hertz_stiffness).collect(), "N/m^(3/2)"),
         "relaxation_time" => {
             let time = |pair: &Pair| pair.mean_relaxation_time_s(relaxation);
             (pairs.iter().map(time).collect(), "s")

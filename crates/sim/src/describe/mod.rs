@@ -51,18 +51,11 @@ pub struct Group {
 
 impl Group {
     fn new(title: impl Into<String>) -> Self {
-        Self {
-            title: title.into(),
-            rows: Vec::new(),
-        }
+        Self { title: title.into(), rows: Vec::new() }
     }
 
     fn put(&mut self, name: impl Into<String>, value: Value, unit: &str) {
-        self.rows.push(Row {
-            name: name.into(),
-            value,
-            unit: unit.to_owned(),
-        });
+        self.rows.push(Row { name: name.into(), value, unit: unit.to_owned() });
     }
 
     fn number(&mut self, name: impl Into<String>, value: f64, unit: &str) {
@@ -103,11 +96,8 @@ impl Group {
 /// A chain that can't be set up.
 pub fn describe(experiment: &Experiment, chain: &Chain) -> Result<Vec<Group>, StudyError> {
     let system = System::new(chain)?;
-    let mut groups = vec![
-        chain::experiment(experiment, chain),
-        chain::beads(chain),
-        chain::ends(chain),
-    ];
+    let mut groups =
+        vec![chain::experiment(experiment, chain), chain::beads(chain), chain::ends(chain)];
     groups.extend(contact::sections(experiment, chain));
     groups.push(rest::at_rest(chain, &system));
     groups.extend(rest::linear_waves(chain, &system));
@@ -144,11 +134,9 @@ pub fn describe_theory(experiment: &Experiment, chain: &Chain) -> Result<Vec<Gro
 /// Solitary waves, as far as theory knows them in this row.
 fn large_waves(experiment: &Experiment, chain: &Chain, system: &System) -> Vec<Group> {
     let known = match theory::waves(chain, system) {
-        Waves::Touching => vec![
-            theory::solitary(chain),
-            theory::profile(chain),
-            theory::long_wave(chain),
-        ],
+        Waves::Touching => {
+            vec![theory::solitary(chain), theory::profile(chain), theory::long_wave(chain)]
+        }
         Waves::Loaded => vec![theory::loaded(chain, system)],
         Waves::Dimer => vec![dimer::long_wave(chain, experiment.units())],
         Waves::None(reason) => vec![Some(theory::no_waves(reason))],

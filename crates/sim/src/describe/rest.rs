@@ -7,25 +7,15 @@ use hertzchain_chain::{Bead, Chain, System};
 pub(super) fn at_rest(chain: &Chain, system: &System) -> Group {
     let mut group = Group::new("At rest");
     let last = chain.beads.len();
-    let overlaps: Vec<f64> = (0..=last)
-        .map(|c| system.static_contact(c).overlap_m)
-        .collect();
+    let overlaps: Vec<f64> = (0..=last).map(|c| system.static_contact(c).overlap_m).collect();
     let loaded = overlaps.iter().filter(|overlap| **overlap > 0.0).count();
     if loaded == 0 {
         group.text("static overlaps", "none: contacts just touch or are open");
     } else {
         for contact in [1, last] {
             let rest = system.static_contact(contact);
-            group.number(
-                format!("static force of contact {contact}"),
-                rest.force_n,
-                "N",
-            );
-            group.number(
-                format!("static overlap of contact {contact}"),
-                rest.overlap_m,
-                "m",
-            );
+            group.number(format!("static force of contact {contact}"), rest.force_n, "N");
+            group.number(format!("static overlap of contact {contact}"), rest.overlap_m, "m");
         }
         let largest = overlaps.iter().copied().fold(0.0, f64::max);
         group.number("largest static overlap", largest, "m");
@@ -50,10 +40,8 @@ pub(super) fn linear_waves(chain: &Chain, system: &System) -> Option<Group> {
     let bead = beads.get(middle - 1)?;
     if is_uniform(beads) {
         for contact in ends(1, beads.len() - 1) {
-            let row = UniformChain {
-                mass_kg: bead.mass_kg,
-                contact_stiffness_n_m: stiffness(contact),
-            };
+            let row =
+                UniformChain { mass_kg: bead.mass_kg, contact_stiffness_n_m: stiffness(contact) };
             let at = format!("at contact {contact}");
             let speed = row.sound_speed_beads_s();
             group.number(format!("sound speed {at}"), speed, "beads/s");
@@ -62,18 +50,10 @@ pub(super) fn linear_waves(chain: &Chain, system: &System) -> Option<Group> {
                 speed * 2.0 * bead.radius_m,
                 "m/s",
             );
-            group.number(
-                format!("cutoff frequency {at}"),
-                row.cutoff_frequency_hz(),
-                "Hz",
-            );
+            group.number(format!("cutoff frequency {at}"), row.cutoff_frequency_hz(), "Hz");
         }
     } else if is_dimer(beads) {
-        dimer(
-            &mut group,
-            beads,
-            [stiffness(middle), stiffness((middle + 1).min(beads.len()))],
-        );
+        dimer(&mut group, beads, [stiffness(middle), stiffness((middle + 1).min(beads.len()))]);
     } else {
         let slowness = |c: usize| (beads[c - 1].mass_kg / stiffness(c)).sqrt();
         let time: f64 = inner.clone().map(slowness).sum();
@@ -84,11 +64,7 @@ pub(super) fn linear_waves(chain: &Chain, system: &System) -> Option<Group> {
 
 /// First and last, once if they are the same.
 fn ends(first: usize, last: usize) -> Vec<usize> {
-    if first >= last {
-        vec![first]
-    } else {
-        vec![first, last]
-    }
+    if first >= last { vec![first] } else { vec![first, last] }
 }
 
 fn is_uniform(beads: &[Bead]) -> bool {
@@ -100,16 +76,9 @@ fn is_dimer(beads: &[Bead]) -> bool {
 }
 
 fn dimer(group: &mut Group, beads: &[Bead], contact_stiffnesses_n_m: [f64; 2]) {
-    let cell = Dimer {
-        masses_kg: [beads[0].mass_kg, beads[1].mass_kg],
-        contact_stiffnesses_n_m,
-    };
+    let cell = Dimer { masses_kg: [beads[0].mass_kg, beads[1].mass_kg], contact_stiffnesses_n_m };
     let edges = cell.band_edges();
-    group.number(
-        "sound speed in the middle",
-        cell.sound_speed_cells_s(),
-        "cells/s",
-    );
+    group.number("sound speed in the middle", cell.sound_speed_cells_s(), "cells/s");
     group.number("band gap from", edges.acoustic_top_hz, "Hz");
     group.number("band gap to", edges.optical_bottom_hz, "Hz");
     group.number("cutoff frequency", edges.optical_top_hz, "Hz");

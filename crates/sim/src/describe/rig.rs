@@ -20,9 +20,7 @@ fn described(part: &RigPart) -> Group {
     let mut parts = Group::new("");
     parts.text("name", part.name.clone());
     let mut number = |name: &str, value: Option<f64>, unit: &str| {
-        value
-            .into_iter()
-            .for_each(|value| parts.number(name, value, unit));
+        value.into_iter().for_each(|value| parts.number(name, value, unit));
     };
     number("mass", part.mass_kg, "kg");
     number("length", part.length_m, "m");

@@ -25,10 +25,7 @@ pub(super) fn dispersion(chain: &Chain, system: &System) -> Option<Group> {
         return None;
     }
     if beads.windows(2).all(|two| two[0] == two[1]) {
-        let row = UniformChain {
-            mass_kg: beads[0].mass_kg,
-            contact_stiffness_n_m: pair[0],
-        };
+        let row = UniformChain { mass_kg: beads[0].mass_kg, contact_stiffness_n_m: pair[0] };
         return Some(uniform(&row));
     }
     let alternate = beads.len() >= 4 && beads.windows(3).all(|three| three[0] == three[2]);
@@ -46,10 +43,7 @@ fn uniform(row: &UniformChain) -> Group {
 
 fn dimer(first: &Bead, second: &Bead, contact_stiffnesses_n_m: [f64; 2]) -> Group {
     let masses_kg = [first.mass_kg, second.mass_kg];
-    let cell = Dimer {
-        masses_kg,
-        contact_stiffnesses_n_m,
-    };
+    let cell = Dimer { masses_kg, contact_stiffnesses_n_m };
     let mut group = Group::new("Dispersion in the middle of the chain: frequency at wavenumber");
     for (part, name) in QUARTERS {
         let (acoustic, optical) = cell.branches_rad_s(part * PI);
@@ -64,26 +58,17 @@ fn dimer(first: &Bead, second: &Bead, contact_stiffnesses_n_m: [f64; 2]) -> Grou
 pub(super) fn modes(chain: &Chain, system: &System) -> Option<Group> {
     let (ends, contacts) = ends(chain);
     let masses: Vec<f64> = chain.beads.iter().map(|bead| bead.mass_kg).collect();
-    let stiffnesses: Vec<f64> = contacts
-        .map(|c| system.static_contact(c).stiffness_n_m)
-        .collect();
+    let stiffnesses: Vec<f64> = contacts.map(|c| system.static_contact(c).stiffness_n_m).collect();
     let mut group = Group::new("Normal modes of the chain under its static load");
     if masses.len() > MOST_BEADS {
         let springs = stiffnesses.iter().all(|k| *k > 0.0);
-        group.text(
-            "modes",
-            format!("not computed for more than {MOST_BEADS} beads"),
-        );
+        group.text("modes", format!("not computed for more than {MOST_BEADS} beads"));
         return springs.then_some(group);
     }
     let modes = normal_modes(&masses, &stiffnesses, ends).ok()?;
     let shown = |i: usize| i < SHOWN || i + SHOWN >= modes.len();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| shown(*i)) {
-        group.number(
-            format!("mode {} of {}", i + 1, modes.len()),
-            hertz(mode),
-            "Hz",
-        );
+        group.number(format!("mode {} of {}", i + 1, modes.len()), hertz(mode), "Hz");
     }
     Some(group)
 }

@@ -24,11 +24,7 @@ pub(super) fn scales(system: &System) -> Group {
     let scales = system.scales();
     group.number("characteristic speed", scales.speed_m_s, "m/s");
     group.number("contact time (overlap over speed)", scales.time_s, "s");
-    group.number(
-        "recommended step for fixed-step codes",
-        scales.time_s / STEPS,
-        "s",
-    );
+    group.number("recommended step for fixed-step codes", scales.time_s / STEPS, "s");
     group
 }
 
@@ -52,12 +48,7 @@ fn impact(chain: &Chain) -> Option<ElasticCollision> {
     let (stiffness, exponent) = contact::elastic(chain, 0)?;
     let (_, speed_m_s) = striker(chain)?;
     let reduced_mass_kg = chain.pair(0)?.mass_kg;
-    Some(ElasticCollision {
-        exponent,
-        stiffness,
-        reduced_mass_kg,
-        speed_m_s,
-    })
+    Some(ElasticCollision { exponent, stiffness, reduced_mass_kg, speed_m_s })
 }
 
 pub(super) fn collision(chain: &Chain) -> Option<Group> {
@@ -81,10 +72,7 @@ pub(super) fn restitution(chain: &Chain) -> Result<Option<Group>, StudyError> {
         initial: Vec::new(),
         push: Push::None,
         far: FarEnd::Free,
-        sections: vec![Section {
-            contacts: 0..=1,
-            ..laws.clone()
-        }],
+        sections: vec![Section { contacts: 0..=1, ..laws.clone() }],
         gaps: Vec::new(),
         incline_rad: 0.0,
         suspension_m: None,
@@ -103,11 +91,7 @@ pub(super) fn restitution(chain: &Chain) -> Result<Option<Group>, StudyError> {
     if let Some(collision) = viscoelastic(chain) {
         let x = collision.parameter();
         if let Ok(rebound) = collision.rebound(ContactEnd::ZeroOverlap) {
-            group.number(
-                "elastic and viscoelastic terms, exact",
-                rebound.restitution,
-                "",
-            );
+            group.number("elastic and viscoelastic terms, exact", rebound.restitution, "");
         }
         let series = restitution_by_series(collision.elastic.exponent, x);
         group.number("elastic and viscoelastic terms, series to x²", series, "");
@@ -127,10 +111,7 @@ fn viscoelastic(chain: &Chain) -> Option<ViscoelasticCollision> {
         return None;
     };
     let damping_time_s = damping / (1.5 * elastic.stiffness);
-    Some(ViscoelasticCollision {
-        elastic,
-        damping_time_s,
-    })
+    Some(ViscoelasticCollision { elastic, damping_time_s })
 }
 
 /// Calls with the solitary wave that carries the striker's whole energy.
@@ -155,11 +136,7 @@ pub(super) fn solitary(chain: &Chain) -> Option<Group> {
         group.number("peak of a bead sensor", wave.peak_sensor_force_n(), "N");
         group.number("peak overlap", wave.peak_overlap_m(), "m");
         let width = wave.force_width_s();
-        group.number(
-            "full width at half maximum of a contact's force, in time",
-            width,
-            "s",
-        );
+        group.number("full width at half maximum of a contact's force, in time", width, "s");
         group.number(
             "full width at half maximum of a contact's force, in beads",
             width * speed,
@@ -179,11 +156,7 @@ pub(super) fn profile(chain: &Chain) -> Option<Group> {
     with_wave(chain, |wave, _| {
         for half_beads in 0..=6 {
             let distance = 0.5 * f64::from(half_beads);
-            group.number(
-                format!("force at {distance} beads"),
-                wave.force_n(distance),
-                "N",
-            );
+            group.number(format!("force at {distance} beads"), wave.force_n(distance), "N");
             let speed = wave.bead_speed_m_s(distance);
             group.number(format!("bead speed at {distance} beads"), speed, "m/s");
         }
@@ -193,21 +166,14 @@ pub(super) fn profile(chain: &Chain) -> Option<Group> {
 
 pub(super) fn long_wave(chain: &Chain) -> Option<Group> {
     let (stiffness, exponent, bead) = middle(chain)?;
-    let theory = LongWave {
-        form: LongWaveForm::Displacement,
-        exponent,
-    };
+    let theory = LongWave { form: LongWaveForm::Displacement, exponent };
     let overlap = with_wave(chain, |wave, _| wave.peak_overlap_m())?;
     let mut group = Group::new("Long-wave theory (Nesterenko) at the same peak overlap");
     let speed = theory.speed_beads_s(stiffness, bead.mass_kg, overlap);
     group.number("speed", speed, "beads/s");
     group.number("length", theory.length_beads(), "beads");
     let width = theory.force_width_beads();
-    group.number(
-        "full width at half maximum of a contact's force",
-        width,
-        "beads",
-    );
+    group.number("full width at half maximum of a contact's force", width, "beads");
     Some(group)
 }
 
@@ -271,10 +237,7 @@ pub(super) fn loaded(chain: &Chain, system: &System) -> Option<Group> {
         let name = format!("speed, dynamic peak force {excess} times the static one");
         group.number(name, speed, "beads/s");
     }
-    group.text(
-        "exact lattice wave",
-        "not computed: known here for rows without load",
-    );
+    group.text("exact lattice wave", "not computed: known here for rows without load");
     Some(group)
 }
 
@@ -303,16 +266,8 @@ pub(super) fn expected(experiment: &Experiment, chain: &Chain, system: &System) 
         return Some(group);
     }
     with_wave(chain, |wave, _| {
-        group.number(
-            "incident time of flight, about",
-            wave.time_of_flight_s(beads),
-            "s",
-        );
-        group.number(
-            "peak of the sensor bead, about",
-            wave.peak_sensor_force_n(),
-            "N",
-        );
+        group.number("incident time of flight, about", wave.time_of_flight_s(beads), "s");
+        group.number("peak of the sensor bead, about", wave.peak_sensor_force_n(), "N");
     })?;
     Some(group)
 }

@@ -62,10 +62,8 @@ pub fn campaign(
     let folder = Folder::open(out, plan)?;
     folder.clear(plan);
     let dealt = plan.series.iter().enumerate();
-    let part: Vec<&Series> = dealt
-        .filter(|(at, _)| shard.holds(*at))
-        .map(|(_, series)| series)
-        .collect();
+    let part: Vec<&Series> =
+        dealt.filter(|(at, _)| shard.holds(*at)).map(|(_, series)| series).collect();
     let (done, due): (Vec<&Series>, Vec<&Series>) =
         part.iter().copied().partition(|series| folder.has(series));
     let fired = AtomicU64::new(0);
@@ -157,19 +155,12 @@ pub fn merge(plan: &Plan, folders: &[&Path], out: &Path) -> Result<Merged, RigEr
         }
         bytes += place.metadata().map_or(0, |data| data.len());
     }
-    Ok(Merged {
-        series: found.len(),
-        copied,
-        bytes,
-    })
+    Ok(Merged { series: found.len(), copied, bytes })
 }
 
 /// The one recording of a series: where several folders have it, it is the same.
 fn only(folders: &[Folder], series: &Series) -> Result<Option<PathBuf>, RigError> {
-    let mut files = folders
-        .iter()
-        .map(|folder| folder.file(series))
-        .filter(|file| file.is_file());
+    let mut files = folders.iter().map(|folder| folder.file(series)).filter(|file| file.is_file());
     let first = files.next();
     if let Some(first) = &first {
         files.try_for_each(|other| same(first, &other))?;
@@ -203,9 +194,7 @@ struct Folder {
 /// Of all that recordings follow from, the program's version and commit included.
 fn fingerprint(plan: &Plan) -> Fingerprint {
     let inputs = Inputs::of("campaign").count("seed", plan.seed);
-    inputs
-        .text("experiment", &plan.experiment.canonical_text())
-        .fingerprint()
+    inputs.text("experiment", &plan.experiment.canonical_text()).fingerprint()
 }
 
 impl Folder {
@@ -216,9 +205,7 @@ impl Folder {
             Err(_) if !path.join(CAMPAIGN_FILE).exists() => {}
             found => return found,
         }
-        let folder = Self {
-            path: path.to_owned(),
-        };
+        let folder = Self { path: path.to_owned() };
         if plan.series.iter().any(|series| folder.has(series)) {
             return Err(holds(
                 path,
@@ -226,10 +213,8 @@ impl Folder {
             ));
         }
         let text = identity(plan);
-        write_whole(&path.join(CAMPAIGN_FILE), |file| {
-            file.write_all(text.as_bytes())
-        })
-        .map_err(|error| RigError::folder(path, error))?;
+        write_whole(&path.join(CAMPAIGN_FILE), |file| file.write_all(text.as_bytes()))
+            .map_err(|error| RigError::folder(path, error))?;
         Ok(folder)
     }
 
@@ -238,9 +223,7 @@ impl Folder {
         let file = path.join(CAMPAIGN_FILE);
         let found = fs::read_to_string(&file).map_err(|error| RigError::folder(&file, error))?;
         match found == identity(plan) {
-            true => Ok(Self {
-                path: path.to_owned(),
-            }),
+            true => Ok(Self { path: path.to_owned() }),
             false => Err(holds(
                 path,
                 "another campaign, or this one by another build of the program, by its campaign.toml",
@@ -307,12 +290,8 @@ pub fn plan_of_folder(path: &Path) -> Result<Plan, RigError> {
         ))
     };
     let (line, toml) = text.split_once('\n').ok_or_else(other)?;
-    let seed = line
-        .split_once(SEED)
-        .and_then(|(_, rest)| rest.split_once(','));
-    let seed = seed
-        .and_then(|(seed, _)| seed.parse().ok())
-        .ok_or_else(other)?;
+    let seed = line.split_once(SEED).and_then(|(_, rest)| rest.split_once(','));
+    let seed = seed.and_then(|(seed, _)| seed.parse().ok()).ok_or_else(other)?;
     let name = line.split('`').nth(1).unwrap_or(CAMPAIGN_FILE);
     let plan = Plan::new(&Experiment::from_text(name, toml)?, Some(seed))?;
     match identity(&plan) == text {
@@ -421,10 +400,7 @@ fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
             text("tap_speed_m_s", campaign.tap_speed_m_s),
             text("high_pass_hz", amplifier.high_pass_hz),
             text("low_pass_hz", amplifier.low_pass_hz),
-            (
-                "low_pass_order".to_owned(),
-                amplifier.order.name().to_owned(),
-            ),
+            ("low_pass_order".to_owned(), amplifier.order.name().to_owned()),
             ("low_pass_kind".to_owned(), amplifier.kind.name().to_owned()),
         ],
     }

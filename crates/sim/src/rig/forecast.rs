@@ -60,11 +60,8 @@ pub fn forecast(plan: &Plan) -> Result<Vec<String>, RigError> {
 /// campaign itself will report.
 fn passages(case: &Case, mut speeds_m_s: Vec<f64>) -> Vec<(f64, Passage)> {
     speeds_m_s.dedup();
-    let options = BatchOptions {
-        accuracy: ACCURACY,
-        rebound: true,
-        ..BatchOptions::of(&case.experiment)
-    };
+    let options =
+        BatchOptions { accuracy: ACCURACY, rebound: true, ..BatchOptions::of(&case.experiment) };
     let mut passages = Vec::new();
     if let Ok(batch) = Batch::new(&case.experiment, speeds_m_s, options) {
         let _ = batch.run_each(Shard::WHOLE, &|| {}, |it| {
@@ -140,14 +137,8 @@ impl Seen {
         let volts = |charge_c_n: f64, force_n: f64| amplifier.gain_v_c * charge_c_n * force_n;
         let back = self.passage.reflected;
         [
-            Some(volts(
-                amplifier.sensitivity_c_n,
-                self.passage.incident.value,
-            )),
-            Some(volts(
-                amplifier.wall_sensitivity_c_n,
-                self.passage.wall.value,
-            )),
+            Some(volts(amplifier.sensitivity_c_n, self.passage.incident.value)),
+            Some(volts(amplifier.wall_sensitivity_c_n, self.passage.wall.value)),
             back.map(|peak| volts(amplifier.sensitivity_c_n, peak.value)),
         ]
     }

@@ -112,10 +112,7 @@ impl GateReading {
     ) -> Self {
         // A striker is never put beyond bead 1.
         let way_m = (gate.way_m + misplaced_m).max(0.0);
-        Self {
-            speed_m_s: speed_m_s + gate.error_m_s * random.normal(),
-            time_s: -way_m / speed_m_s,
-        }
+        Self { speed_m_s: speed_m_s + gate.error_m_s * random.normal(), time_s: -way_m / speed_m_s }
     }
 }
 
@@ -315,9 +312,7 @@ const TERMS: u32 = 18;
 
 /// exp of a matrix: a Taylor series of a part, squared again and again.
 fn exponential(matrix: &Square) -> Square {
-    let rows = matrix
-        .iter()
-        .map(|row| row.iter().map(|x| x.abs()).sum::<f64>());
+    let rows = matrix.iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>());
     let norm = rows.fold(0.0, f64::max);
     let halvings = (norm.max(0.5).log2() + 1.0).ceil().clamp(0.0, 1000.0) as i32;
     let part = scaled(matrix, 0.5f64.powi(halvings));
@@ -344,10 +339,7 @@ fn scaled(matrix: &Square, factor: f64) -> Square {
 fn product(left: &Square, right: &Square) -> Square {
     let columns = 0..right.len();
     let entry = |row: &[f64], column: usize| -> f64 {
-        row.iter()
-            .zip(right)
-            .map(|(factor, other)| factor * other[column])
-            .sum()
+        row.iter().zip(right).map(|(factor, other)| factor * other[column]).sum()
     };
     let row = |row: &Vec<f64>| columns.clone().map(|column| entry(row, column)).collect();
     left.iter().map(row).collect()

@@ -114,13 +114,8 @@ fn row_of_beads(experiment: &Experiment, speed_m_s: f64) -> Result<(), RigError>
 /// The cases of a file, or its one chain by the file's name.
 fn cases(experiment: &Experiment) -> Result<Vec<Case>, RigError> {
     let named = |name: &str| {
-        let chosen = experiment
-            .case(name)
-            .unwrap_or_else(|| Ok(experiment.clone()));
-        Ok(Case {
-            name: name.to_owned(),
-            experiment: chosen?,
-        })
+        let chosen = experiment.case(name).unwrap_or_else(|| Ok(experiment.clone()));
+        Ok(Case { name: name.to_owned(), experiment: chosen? })
     };
     match experiment.cases() {
         none if none.is_empty() => Ok(vec![named(&own_name(experiment))?]),

@@ -166,9 +166,7 @@ impl Window {
         };
         let first = passed.unwrap_or(0);
         let converter = Converter::new(recorder);
-        let stored = channels
-            .iter()
-            .flat_map(|volts| volts.iter().skip(first).take(self.samples));
+        let stored = channels.iter().flat_map(|volts| volts.iter().skip(first).take(self.samples));
         Record {
             samples: stored.map(|v| converter.reading(*v)).collect(),
             touch_s: -(self.start_s + first as f64 * self.interval_s),

@@ -63,13 +63,7 @@ impl<'a> Bench<'a> {
             ..SlowPhase::default()
         };
         settle(&tapped, &mut state, &slow, &mut |_, _, _| {})?;
-        let mut bench = Self {
-            slow,
-            experiment,
-            sizes,
-            tapped,
-            state,
-        };
+        let mut bench = Self { slow, experiment, sizes, tapped, state };
         bench.hold_wall();
         Ok(bench)
     }
@@ -193,9 +187,7 @@ pub fn shoot(
     let outcome = {
         let sensors = [Sensor::Bead(sensor_bead), Sensor::Contact(wall)];
         let mut tracer = TraceObserver { trace, sensors };
-        let method = DormandPrince {
-            tolerance: TOLERANCE,
-        };
+        let method = DormandPrince { tolerance: TOLERANCE };
         let limits = Limits::until(LONGEST_WAVE_S);
         run(&shot, &method, limits, &mut [&mut passages, &mut tracer])?
     };
@@ -206,9 +198,7 @@ pub fn shoot(
         reflected_s: reflected.0 - wall.0,
         peaks_s: [incident.0, wall.0, reflected.0],
         peaks_n: [incident.1, wall.1, reflected.1],
-        rebound_m_s: rest
-            .withdrawn
-            .map_or(f64::NAN, |striker| striker.velocity_m_s),
+        rebound_m_s: rest.withdrawn.map_or(f64::NAN, |striker| striker.velocity_m_s),
         before,
         after: bench.state().clone(),
         gaps_before_m,
@@ -312,13 +302,7 @@ impl SeriesRun<'_> {
     /// Taps, rest, shot.
     fn repeat(&mut self, number: u32) -> Result<MeasuredShot, RigError> {
         let mut random = self.random(Purpose::Shot(number));
-        let Campaign {
-            actuator,
-            photogate,
-            amplifier,
-            recorder,
-            ..
-        } = self.campaign;
+        let Campaign { actuator, photogate, amplifier, recorder, .. } = self.campaign;
         // The shot's own draws first: they are the same after any number of taps.
         let speed_m_s = true_speed_m_s(actuator, self.series.programmed_m_s, &mut random);
         let misplaced_m = actuator.placing_m * random.normal();

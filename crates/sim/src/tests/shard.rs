@@ -14,10 +14,7 @@ fn parts_hold_every_place_once() {
 #[test]
 fn parts_are_written_as_they_are_read() {
     let part: Shard = " 2/ 5".parse().unwrap();
-    assert_eq!(
-        (part.to_string(), part.number(), part.of()),
-        ("2/5".to_owned(), 2, 5)
-    );
+    assert_eq!((part.to_string(), part.number(), part.of()), ("2/5".to_owned(), 2, 5));
     for text in ["0/3", "4/3", "3", "a/b", "1/0", ""] {
         assert!(text.parse::<Shard>().is_err(), "{text}");
     }

@@ -36,10 +36,7 @@ fn matches(order: LowPass, risen: impl Fn(f64) -> f64) {
         let (from_s, time_s) = (at as f64 * INTERVAL_S, (at + 1) as f64 * INTERVAL_S);
         let expected = STEP_V * (risen(time_s) - risen(from_s)) / INTERVAL_S;
         // Rounding of 20,000 steps, and of two integrals of up to 800 intervals.
-        assert!(
-            (found - expected).abs() < 2e-12 * STEP_V,
-            "{time_s}: {found} {expected}"
-        );
+        assert!((found - expected).abs() < 2e-12 * STEP_V, "{time_s}: {found} {expected}");
     }
 }
 
@@ -48,9 +45,7 @@ fn a_rise_through_a_first_order_low_pass_and_the_high_pass_is_two_exponentials()
     let (low, high) = (TAU * 30e3, TAU * 200.0);
     // Of low/(low − high) (exp(−high t) − exp(−low t)).
     let one = |rate: f64, t: f64| -(-rate * t).exp_m1() / rate;
-    matches(LowPass::First, |t| {
-        low / (low - high) * (one(high, t) - one(low, t))
-    });
+    matches(LowPass::First, |t| low / (low - high) * (one(high, t) - one(low, t)));
 }
 
 #[test]
@@ -66,12 +61,8 @@ fn a_rise_through_a_butterworth_low_pass_overshoots_as_its_closed_form() {
         let end = (-sigma * t).exp() * ((1.0 - b) * sin - (1.0 + b) * cos);
         (end + 1.0 + b) / (2.0 * sigma)
     };
-    matches(LowPass::Second, |t| {
-        share * (-(-high * t).exp_m1() / high - rung(t))
-    });
-    let most = response(LowPass::Second, 100)
-        .into_iter()
-        .fold(0.0, f64::max);
+    matches(LowPass::Second, |t| share * (-(-high * t).exp_m1() / high - rung(t)));
+    let most = response(LowPass::Second, 100).into_iter().fold(0.0, f64::max);
     // Butterworth's overshoot is e^{-π} = 4.3 %, less what the high-pass takes.
     assert!(most > 1.02 * STEP_V && most < 1.0433 * STEP_V, "{most}");
 }
@@ -117,32 +108,17 @@ fn gain(numbers: &Numbers, frequency_hz: f64) -> f64 {
 
 #[test]
 fn low_passes_of_all_orders_and_kinds_have_half_the_power_at_the_corner() {
-    let orders = [
-        LowPass::First,
-        LowPass::Second,
-        LowPass::Third,
-        LowPass::Fourth,
-    ];
+    let orders = [LowPass::First, LowPass::Second, LowPass::Third, LowPass::Fourth];
     for (order, poles) in orders.into_iter().zip(1..) {
         for kind in [LowPassKind::Butterworth, LowPassKind::Bessel] {
-            let numbers = Numbers {
-                kind,
-                high_pass_hz: 1e-3,
-                ..numbers(order)
-            };
+            let numbers = Numbers { kind, high_pass_hz: 1e-3, ..numbers(order) };
             let at_corner = gain(&numbers, numbers.low_pass_hz);
             // Straight lines between samples, and a high-pass far below.
-            assert!(
-                (at_corner * SQRT_2 - 1.0).abs() < 1e-4,
-                "{order:?} {kind:?}: {at_corner}"
-            );
+            assert!((at_corner * SQRT_2 - 1.0).abs() < 1e-4, "{order:?} {kind:?}: {at_corner}");
             if kind == LowPassKind::Butterworth {
                 let expected = (1.0 + 2_f64.powi(2 * poles)).sqrt().recip();
                 let octave = gain(&numbers, 2.0 * numbers.low_pass_hz);
-                assert!(
-                    (octave / expected - 1.0).abs() < 1e-3,
-                    "{order:?}: {octave}"
-                );
+                assert!((octave / expected - 1.0).abs() < 1e-3, "{order:?}: {octave}");
             }
         }
     }
@@ -155,10 +131,7 @@ fn bell(time_s: f64) -> [f64; 2] {
 
 #[test]
 fn smooth_forces_half_a_microsecond_apart_are_followed_to_a_millionth() {
-    let numbers = Numbers {
-        low_pass_hz: 180e3,
-        ..numbers(LowPass::Second)
-    };
+    let numbers = Numbers { low_pass_hz: 180e3, ..numbers(LowPass::Second) };
     let every = |interval_s: f64, count: usize| {
         let force = |at: usize| bell(at as f64 * interval_s);
         Amplifier::new(&numbers, interval_s).follow(count, force)

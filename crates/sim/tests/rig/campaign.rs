@@ -20,14 +20,10 @@ impl Scratch {
 
     /// All recordings by name.
     fn recordings(&self) -> BTreeMap<String, Vec<u8>> {
-        let entries = std::fs::read_dir(&self.0)
-            .unwrap()
-            .map(|entry| entry.unwrap().path());
+        let entries = std::fs::read_dir(&self.0).unwrap().map(|entry| entry.unwrap().path());
         let recordings = entries.filter(|path| path.extension().is_some_and(|end| end == "h5"));
         let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
-        recordings
-            .map(|path| (name(&path), std::fs::read(&path).unwrap()))
-            .collect()
+        recordings.map(|path| (name(&path), std::fs::read(&path).unwrap())).collect()
     }
 }
 
@@ -44,22 +40,14 @@ fn shard(text: &str) -> Shard {
 fn quiet(_: Progress) {}
 
 fn with_threads(threads: usize, plan: &Plan, out: &Scratch) {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .unwrap();
-    pool.install(|| campaign(plan, &out.0, Shard::WHOLE, &quiet))
-        .unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| campaign(plan, &out.0, Shard::WHOLE, &quiet)).unwrap();
 }
 
 #[test]
 fn one_seed_gives_one_campaign_whatever_the_threads_and_another_seed_another() {
     let plan = plan(&[]);
-    let (one, three, other) = (
-        Scratch::new("one"),
-        Scratch::new("three"),
-        Scratch::new("other"),
-    );
+    let (one, three, other) = (Scratch::new("one"), Scratch::new("three"), Scratch::new("other"));
     with_threads(1, &plan, &one);
     with_threads(3, &plan, &three);
     assert_eq!(one.recordings().len(), 6);
@@ -110,10 +98,7 @@ fn what_is_finished_is_kept_and_what_is_missing_is_made_again() {
     assert!(!killed.exists() && alive.exists() && other.exists());
     assert_eq!((done.kept, done.run, done.shots), (5, 1, 3));
     assert!(out.recordings() == before);
-    assert_eq!(
-        done.bytes,
-        before.values().map(|bytes| bytes.len() as u64).sum::<u64>()
-    );
+    assert_eq!(done.bytes, before.values().map(|bytes| bytes.len() as u64).sum::<u64>());
 }
 
 /// A file of that name that is not what this campaign would make of it.
@@ -232,14 +217,7 @@ fn a_recording_is_read_back_with_its_speeds_and_its_true_values_apart() {
     campaign(&plan, &out.0, shard("1/6"), &quiet).unwrap();
     let path = out.0.join(format!("{}.h5", plan.series[0].name));
     let truth = hertzchain_measure::records::truth(&path).unwrap();
-    let column = |name: &str| {
-        truth
-            .iter()
-            .find(|(found, _)| found == name)
-            .unwrap()
-            .1
-            .clone()
-    };
+    let column = |name: &str| truth.iter().find(|(found, _)| found == name).unwrap().1.clone();
     assert_eq!(column("speed_m_s").len(), 3);
     assert!(column("incident_tof_s").iter().all(|tof_s| *tof_s > 0.0));
 }

@@ -21,10 +21,7 @@ fn a_record_that_ends_before_the_wave_is_back_is_told_with_one_that_does_not() {
     let longer = format!("record = \"{enough_ms} ms\"");
     let plan = plan(&[("record = \"20 ms\"", &longer), ("taps = 2", "taps = 0")]);
     let left = forecast(&plan).unwrap();
-    assert!(
-        !left.iter().any(|line| line.contains("`dry` at 0.1000")),
-        "{left:?}"
-    );
+    assert!(!left.iter().any(|line| line.contains("`dry` at 0.1000")), "{left:?}");
     // The shot of a real series is over within that record.
     let fired = shots(&plan, 0).remove(0);
     let back_s = fired.record.touch_s + fired.shot.peaks_s[2];
@@ -49,17 +46,11 @@ fn a_converter_or_a_trigger_that_sees_no_shot_is_told() {
     let reported = |from: &str, to: &str| forecast(&plan(&[(from, to)])).unwrap().join("\n");
     let record = "record = \"20 ms\"";
     let clipped = reported(record, "record = \"20 ms\"\nrange = \"20 mV\"");
-    assert!(
-        clipped.contains("is clipped at the converter's range of ± 0.02 V"),
-        "{clipped}"
-    );
+    assert!(clipped.contains("is clipped at the converter's range of ± 0.02 V"), "{clipped}");
     let ranges = clipped.split("range = \"").skip(1);
     let volts = ranges.map(|text| text.split(" V").next().unwrap().parse().unwrap());
     let enough = volts.fold(0.0, f64::max);
-    let wider = reported(
-        record,
-        &format!("record = \"20 ms\"\nrange = \"{enough} V\""),
-    );
+    let wider = reported(record, &format!("record = \"20 ms\"\nrange = \"{enough} V\""));
     assert_eq!(wider, "");
     let coarse = reported(record, "record = \"20 ms\"\nbits = 4");
     assert!(coarse.contains("steps of the converter"), "{coarse}");
@@ -68,10 +59,7 @@ fn a_converter_or_a_trigger_that_sees_no_shot_is_told() {
         reported(record, &with)
     };
     let high = level("5 V");
-    assert!(
-        high.contains("never passes the trigger's level of 5 V"),
-        "{high}"
-    );
+    assert!(high.contains("never passes the trigger's level of 5 V"), "{high}");
     let low = level("1 mV");
     assert!(low.contains("within the noise"), "{low}");
     assert_eq!(level("20 mV"), "");
@@ -81,8 +69,5 @@ fn a_converter_or_a_trigger_that_sees_no_shot_is_told() {
 fn gaps_wider_than_beads_are_refused_by_name() {
     let wide = experiment(&[("gap_scatter = \"5 um\"", "gap_scatter = \"50 mm\"")]);
     let refused = Plan::new(&wide, None).unwrap_err().to_string();
-    assert!(
-        refused.contains("`gap_scatter`") && refused.contains("50 mm"),
-        "{refused}"
-    );
+    assert!(refused.contains("`gap_scatter`") && refused.contains("50 mm"), "{refused}");
 }

@@ -12,12 +12,7 @@ fn actuator() -> Actuator {
 }
 
 fn recorder(bits: u32, range_v: f64, offset_v: f64) -> Recorder {
-    Recorder {
-        bits,
-        range_v,
-        offset_v,
-        ..preset("dry").unwrap().campaign().recorder
-    }
+    Recorder { bits, range_v, offset_v, ..preset("dry").unwrap().campaign().recorder }
 }
 
 fn random() -> RandomStream {
@@ -66,14 +61,9 @@ fn shots_spread_by_the_actuator_s_number_and_the_gate_adds_its_own() {
     // Five standard errors of 10,000 draws.
     assert!((mean - 0.6).abs() < 5.0 * 0.003 / 100.0, "{mean}");
     assert!((deviation / 0.003 - 1.0).abs() < 5.0 / 141.0, "{deviation}");
-    let gate = Photogate {
-        error_m_s: 0.001,
-        way_m: 2e-3,
-    };
+    let gate = Photogate { error_m_s: 0.001, way_m: 2e-3 };
     let measured = |random: &mut RandomStream| GateReading::new(&gate, 0.5, 0.0, random);
-    let errors: Vec<f64> = (0..10_000)
-        .map(|_| measured(&mut random).speed_m_s - 0.5)
-        .collect();
+    let errors: Vec<f64> = (0..10_000).map(|_| measured(&mut random).speed_m_s - 0.5).collect();
     assert!((spread(&errors).1 / 0.001 - 1.0).abs() < 5.0 / 141.0);
     assert_eq!(measured(&mut random).time_s, -2e-3 / 0.5);
 }
@@ -111,14 +101,8 @@ fn an_offset_moves_all_readings() {
 fn fewer_bits_are_coarser_steps_of_the_same_volts() {
     let converter = Converter::new(&recorder(8, 1.0, 0.0));
     let step = 1.0 / 128.0;
-    assert_eq!(
-        f64::from(converter.reading(3.3 * step)) * converter.volts_per_count(),
-        3.0 * step
-    );
-    assert_eq!(
-        f64::from(converter.reading(5.0)) * converter.volts_per_count(),
-        127.0 * step
-    );
+    assert_eq!(f64::from(converter.reading(3.3 * step)) * converter.volts_per_count(), 3.0 * step);
+    assert_eq!(f64::from(converter.reading(5.0)) * converter.volts_per_count(), 127.0 * step);
     assert_eq!(converter.reading(-5.0), i16::MIN);
 }
 

@@ -14,17 +14,10 @@ fn a_poisoned_series_is_told_and_stops_no_other() {
     poisoned.series[1].programmed_m_s = f64::NAN;
     let done = campaign(&poisoned, &out, Shard::WHOLE, &|_| {}).unwrap();
     assert_eq!((done.run, done.failed.len()), (sound.series.len() - 1, 1));
-    assert!(
-        done.failed[0].contains(&sound.series[1].name),
-        "{:?}",
-        done.failed
-    );
+    assert!(done.failed[0].contains(&sound.series[1].name), "{:?}", done.failed);
     let there = |plan: &hertzchain_sim::rig::Plan| {
         let file = |name: &str| out.join(format!("{name}.h5")).is_file();
-        plan.series
-            .iter()
-            .map(|series| file(&series.name))
-            .collect::<Vec<bool>>()
+        plan.series.iter().map(|series| file(&series.name)).collect::<Vec<bool>>()
     };
     assert_eq!(there(&sound).iter().filter(|there| !**there).count(), 1);
     assert!(!there(&sound)[1]);

@@ -42,9 +42,7 @@ fn record(trigger: Trigger, gate_s: f64, amplifier: &Amplifier) -> Record {
 
 /// Time in s of the largest sample after the touch.
 fn peak_s(record: &Record) -> f64 {
-    let (at, _) = (record.samples.iter().enumerate())
-        .max_by_key(|(_, sample)| **sample)
-        .unwrap();
+    let (at, _) = (record.samples.iter().enumerate()).max_by_key(|(_, sample)| **sample).unwrap();
     at as f64 * 1e-6 - record.touch_s
 }
 
@@ -57,11 +55,7 @@ fn the_photogate_starts_a_record_before_the_touch() {
     // clock has any phase.
     assert!((record.touch_s - 3e-3).abs() <= 1e-6, "{}", record.touch_s);
     // The low-pass delays by √2/ω = 0.5 µs; samples are 1 µs apart.
-    assert!(
-        (peak_s(&record) - 0.6e-3).abs() < 1.6e-6,
-        "{}",
-        peak_s(&record)
-    );
+    assert!((peak_s(&record) - 0.6e-3).abs() < 1.6e-6, "{}", peak_s(&record));
 }
 
 #[test]
@@ -73,11 +67,7 @@ fn a_level_starts_a_record_where_the_signal_passes_it() {
     let half = (0.5 / 10.0 * 32768.0) as i16;
     assert!(record.samples[999] < half && record.samples[1000] >= half);
     // To a sample and the delay of the low-pass.
-    assert!(
-        (record.touch_s + 0.55e-3 - 1e-3).abs() < 2e-6,
-        "{}",
-        record.touch_s
-    );
+    assert!((record.touch_s + 0.55e-3 - 1e-3).abs() < 2e-6, "{}", record.touch_s);
 }
 
 #[test]
@@ -92,10 +82,7 @@ fn a_level_that_is_never_passed_starts_a_record_at_the_touch_and_says_so() {
 fn both_discs_add_in_one_channel_by_their_sensitivities() {
     let recorder = recorder(Trigger::Photogate);
     let window = Window::new(&recorder, -2e-3, &mut random());
-    let amplifier = Amplifier {
-        wall_sensitivity_c_n: 5e-12,
-        ..amplifier()
-    };
+    let amplifier = Amplifier { wall_sensitivity_c_n: 5e-12, ..amplifier() };
     let mut trace = window.trace();
     trace.push(0.1e-3, [100.0, 40.0]);
     let record = window.record(trace, &amplifier, &recorder, &mut random());
@@ -106,14 +93,9 @@ fn both_discs_add_in_one_channel_by_their_sensitivities() {
 
 #[test]
 fn noise_has_the_amplifier_s_deviation() {
-    let noisy = Amplifier {
-        noise_v: 0.02,
-        ..amplifier()
-    };
+    let noisy = Amplifier { noise_v: 0.02, ..amplifier() };
     let record = record(Trigger::Photogate, -2e-3, &noisy);
-    let volts = record.samples[..2_500]
-        .iter()
-        .map(|s| f64::from(*s) * 10.0 / 32768.0);
+    let volts = record.samples[..2_500].iter().map(|s| f64::from(*s) * 10.0 / 32768.0);
     let square: f64 = volts.map(|v| v * v).sum();
     let deviation = (square / 2_500.0).sqrt();
     // Five standard errors of 2,500 samples.

@@ -53,10 +53,7 @@ fn friction_makes_slow_shots_later() {
     let other = plan(&[SAME_SPEED, ("friction = 0.05", "friction = 0.15")]);
     for (series, found_s) in [(SLOW, 0.29e-6), (SLOW_WET, 0.68e-6)] {
         let longer_s = mean(&longer_s(&other, series, INCIDENT_S));
-        assert!(
-            (0.5 * found_s..2.0 * found_s).contains(&longer_s),
-            "{longer_s:e}"
-        );
+        assert!((0.5 * found_s..2.0 * found_s).contains(&longer_s), "{longer_s:e}");
     }
 }
 
@@ -69,10 +66,7 @@ fn seats_otherwise(other: &Plan) {
     let both_ways = slow_s.iter().any(|s| *s > 0.0) && slow_s.iter().any(|s| *s < 0.0);
     assert!(both_ways, "{slow_s:?}");
     let fast_s = largest(&longer_s(other, FAST, INCIDENT_S));
-    assert!(
-        (0.01e-6..0.3 * largest_s).contains(&fast_s),
-        "{fast_s:e} {largest_s:e}"
-    );
+    assert!((0.01e-6..0.3 * largest_s).contains(&fast_s), "{fast_s:e} {largest_s:e}");
 }
 
 #[test]
@@ -117,10 +111,7 @@ fn a_shot_leaves_what_the_next_one_finds() {
         assert_eq!(left.gaps_after_m, found.gaps_before_m);
         // Nothing is left of the motion: the next shot waits for rest.
         assert!(left.after.rests(), "{:?}", left.after.velocity_m_s);
-        assert_eq!(
-            wave_from(experiment, &found.before, &pair[1]),
-            found.incident_s
-        );
+        assert_eq!(wave_from(experiment, &found.before, &pair[1]), found.incident_s);
     }
     let after = &shots[0].shot.gaps_after_m;
     assert!(after.iter().any(|gap_m| *gap_m > 1e-6), "{after:?}");
@@ -170,10 +161,7 @@ fn a_series_is_taps_and_shots_on_one_bench() {
 fn the_same_shots_are_fired_whatever_the_number_of_taps() {
     let fired = |taps: &str| -> Vec<(f64, f64)> {
         let shots = shots(&plan(&[("taps = 2", taps)]), 1);
-        shots
-            .iter()
-            .map(|fired| (fired.speed_m_s, fired.measured_m_s))
-            .collect()
+        shots.iter().map(|fired| (fired.speed_m_s, fired.measured_m_s)).collect()
     };
     assert_eq!(fired("taps = 0"), fired("taps = 3"));
 }
@@ -193,10 +181,7 @@ fn series_and_shots_differ_and_a_seed_repeats_them() {
 fn recorder(keys: &str) -> Plan {
     let keys = format!("before = \"1 ms\"\n{keys}");
     let silent = "[campaign.amplifier]\nnoise = \"0 V\"\n\n[campaign.recorder]";
-    plan(&[
-        ("before = \"1 ms\"", &keys),
-        ("[campaign.recorder]", silent),
-    ])
+    plan(&[("before = \"1 ms\"", &keys), ("[campaign.recorder]", silent)])
 }
 
 #[test]

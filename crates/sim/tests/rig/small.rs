@@ -31,7 +31,5 @@ pub fn shots(plan: &Plan, series: usize) -> Vec<MeasuredShot> {
 }
 
 /// What is needed for the spread of shots that differ in nothing but the chain.
-pub const SAME_SPEED: (&str, &str) = (
-    "[campaign.laying]",
-    "[campaign.actuator]\nspread = \"0 m/s\"\n\n[campaign.laying]",
-);
+pub const SAME_SPEED: (&str, &str) =
+    ("[campaign.laying]", "[campaign.actuator]\nspread = \"0 m/s\"\n\n[campaign.laying]");

@@ -19,10 +19,7 @@ const COMPACT: [(&str, &str); 8] = [
 
 /// Incident and reflected time of flight in s at the shot's own speed, much closer than the rig's.
 fn fine_s(experiment: &Experiment, fired: &MeasuredShot) -> [f64; 2] {
-    let options = BatchOptions {
-        accuracy: 1e-10,
-        ..BatchOptions::of(experiment)
-    };
+    let options = BatchOptions { accuracy: 1e-10, ..BatchOptions::of(experiment) };
     let batch = Batch::new(experiment, vec![fired.speed_m_s], options).unwrap();
     let flight = batch.run(Shard::WHOLE, &|| {}).rows.flights()[0];
     [flight.1, flight.2.unwrap()]

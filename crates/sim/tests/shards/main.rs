@@ -29,10 +29,7 @@ fn small(accuracy: f64) -> Batch {
     let hertz = hertz.set(&[("beads[0].count", 10.0)]).unwrap();
     let mut speeds: Vec<f64> = (1..=10).map(|i| 0.1 * f64::from(i)).collect();
     speeds[4] = -1.0;
-    let options = BatchOptions {
-        accuracy,
-        ..BatchOptions::of(&hertz)
-    };
+    let options = BatchOptions { accuracy, ..BatchOptions::of(&hertz) };
     Batch::new(&hertz, speeds, options).unwrap()
 }
 
@@ -46,10 +43,7 @@ fn shards(sweep: &Batch, folder: &Scratch, which: &[usize], of: usize) {
 fn contents(part: &BatchResult) -> (Vec<u64>, Vec<usize>) {
     let values = part.rows.columns.iter().flatten();
     let failed = part.rows.failed.iter().map(|failed| failed.place);
-    (
-        values.map(|value| value.to_bits()).collect(),
-        failed.collect(),
-    )
+    (values.map(|value| value.to_bits()).collect(), failed.collect())
 }
 
 #[test]
@@ -79,25 +73,13 @@ fn a_shard_is_the_same_file_anywhere_and_is_not_computed_twice() {
     };
     let first = sweep.run_into(&here.0, shard, &count).unwrap();
     let again = sweep.run_into(&here.0, shard, &count).unwrap();
-    let one_thread = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .unwrap();
-    let other = one_thread
-        .install(|| sweep.run_into(&there.0, shard, &|| {}))
-        .unwrap();
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let other = one_thread.install(|| sweep.run_into(&there.0, shard, &|| {})).unwrap();
     assert!(!first.stored && again.stored && !other.stored);
     assert_eq!(computed.into_inner(), 5);
-    assert_eq!(
-        fs::read(&first.path).unwrap(),
-        fs::read(&other.path).unwrap()
-    );
+    assert_eq!(fs::read(&first.path).unwrap(), fs::read(&other.path).unwrap());
     assert_eq!(contents(&again.result), contents(&first.result));
-    assert_eq!(
-        fs::read_dir(&here.0).unwrap().count(),
-        1,
-        "nothing stays beside it"
-    );
+    assert_eq!(fs::read_dir(&here.0).unwrap().count(), 1, "nothing stays beside it");
 }
 
 #[test]
@@ -147,16 +129,10 @@ fn what_is_missing_or_another_runs_is_contents() {
     shards(&small(1e-6), &folder, &[2, 4, 7], 8);
     let error = BatchResult::gather(&[&folder.0]).unwrap_err().to_string();
     assert!(error.contains("5 of 8 shards are missing"), "{error}");
-    assert!(
-        error.contains("1,3,5-6,8") && error.contains("--shard 1/8"),
-        "{error}"
-    );
+    assert!(error.contains("1,3,5-6,8") && error.contains("--shard 1/8"), "{error}");
     shards(&small(1e-5), &folder, &[1], 1);
     let error = BatchResult::gather(&[&folder.0]).unwrap_err().to_string();
-    assert!(
-        error.contains("2 different runs") && error.contains("accuracy 1e-5"),
-        "{error}"
-    );
+    assert!(error.contains("2 different runs") && error.contains("accuracy 1e-5"), "{error}");
     let empty = Scratch::new("empty");
     fs::create_dir_all(&empty.0).unwrap();
     let error = BatchResult::gather(&[&empty.0]).unwrap_err().to_string();

@@ -30,11 +30,7 @@ fn a_force_that_ends_between_steps_is_integrated_exactly() {
     // Begins smoothly and is level near its end: only the end is sharp.
     let rise = |t: f64| 1.0 - (-(t / 12.0).powi(4)).exp();
     let force = |t: f64| {
-        if t < end {
-            leading.force(end - t) * rise(t)
-        } else {
-            0.0
-        }
+        if t < end { leading.force(end - t) * rise(t) } else { 0.0 }
     };
     let [v, x] = move_by(force, edge, 30);
     let fine = 200_000;

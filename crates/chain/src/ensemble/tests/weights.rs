@@ -24,10 +24,7 @@ fn polynomials_of_the_methods_order_are_integrated_exactly() {
         let p = f64::from(power);
         // The first steps use fewer accelerations: exact only up to what
         // they leave, (1e-3)² of a step.
-        assert!(
-            (v / (scale * t.powf(p + 1.0) / (p + 1.0)) - 1.0).abs() < 1e-9,
-            "{power}"
-        );
+        assert!((v / (scale * t.powf(p + 1.0) / (p + 1.0)) - 1.0).abs() < 1e-9, "{power}");
         let exact = scale * t.powf(p + 2.0) / (p + 1.0) / (p + 2.0);
         assert!((x / exact - 1.0).abs() < 1e-9, "{power}");
     }

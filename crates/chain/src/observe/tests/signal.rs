@@ -7,11 +7,7 @@ fn dense(count: usize) -> Signal {
     let stretch = |i: usize| {
         let start_s = i as f64 * length_s;
         let inside = |k: usize| start_s + 0.999_999 * 0.25 * k as f64 * length_s;
-        Stretch {
-            start_s,
-            length_s,
-            values: std::array::from_fn(|k| value(inside(k))),
-        }
+        Stretch { start_s, length_s, values: std::array::from_fn(|k| value(inside(k))) }
     };
     Signal {
         largest: 2.0,
@@ -23,20 +19,10 @@ fn dense(count: usize) -> Signal {
 #[test]
 fn a_maximum_that_two_steps_find_is_one_and_two_with_a_dip_are_two() {
     let kept = |values: [f64; 5], heights: [f64; 2]| {
-        let stretch = Stretch {
-            start_s: 0.0,
-            length_s: 1.0,
-            values,
-        };
-        let mut signal = Signal {
-            largest: 1.0,
-            ..Signal::new(Sensor::Contact(0))
-        };
+        let stretch = Stretch { start_s: 0.0, length_s: 1.0, values };
+        let mut signal = Signal { largest: 1.0, ..Signal::new(Sensor::Contact(0)) };
         let maximum = |(time_s, value): (f64, f64)| Maximum { time_s, value };
-        signal.keep_inside(
-            &stretch,
-            [(0.1, heights[0]), (0.9, heights[1])].map(maximum).into(),
-        );
+        signal.keep_inside(&stretch, [(0.1, heights[0]), (0.9, heights[1])].map(maximum).into());
         signal.maxima.iter().map(|it| it.time_s).collect::<Vec<_>>()
     };
     assert_eq!(kept([0.0, 0.9, 0.9, 0.95, 0.5], [0.9, 1.0]), [0.9]);

@@ -52,14 +52,8 @@ pub fn normal_modes(
     check(masses_kg, contact_stiffnesses_n_m, ends)?;
     let mut columns = strain_columns(masses_kg, contact_stiffnesses_n_m, ends);
     orthogonalise(&mut columns)?;
-    let mut modes: Vec<Mode> = columns
-        .iter()
-        .map(|column| mode(column, masses_kg))
-        .collect();
-    modes.sort_by(|a, b| {
-        a.angular_frequency_rad_s
-            .total_cmp(&b.angular_frequency_rad_s)
-    });
+    let mut modes: Vec<Mode> = columns.iter().map(|column| mode(column, masses_kg)).collect();
+    modes.sort_by(|a, b| a.angular_frequency_rad_s.total_cmp(&b.angular_frequency_rad_s));
     Ok(modes)
 }
 
@@ -80,12 +74,8 @@ fn check(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Result<(), Chain
             "{given} contact stiffnesses given, the beads and ends need {expected}"
         )));
     }
-    masses_kg
-        .iter()
-        .try_for_each(|m| require_positive("bead mass", *m))?;
-    stiffnesses
-        .iter()
-        .try_for_each(|k| require_positive("contact stiffness", *k))
+    masses_kg.iter().try_for_each(|m| require_positive("bead mass", *m))?;
+    stiffnesses.iter().try_for_each(|k| require_positive("contact stiffness", *k))
 }
 
 /// A column of the strain matrix and the combination of beads it stands for.
@@ -116,9 +106,7 @@ fn strain_columns(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Vec<Col
         if let Some(contact) = near(bead) {
             add(contact, -1.0);
         }
-        let weight = (0..beads)
-            .map(|other| f64::from(u8::from(other == bead)))
-            .collect();
+        let weight = (0..beads).map(|other| f64::from(u8::from(other == bead))).collect();
         Column { strain, weight }
     };
     masses_kg.iter().enumerate().map(column).collect()
@@ -151,10 +139,7 @@ fn sweep(columns: &mut [Column]) -> f64 {
 
 /// Squared length below which a column is a rounded zero (a free shift).
 fn rounding_floor(columns: &[Column]) -> f64 {
-    let longest = columns
-        .iter()
-        .map(|c| dot(&c.strain, &c.strain))
-        .fold(0.0, f64::max);
+    let longest = columns.iter().map(|c| dot(&c.strain, &c.strain)).fold(0.0, f64::max);
     longest * (f64::EPSILON * columns.len() as f64).powi(2)
 }
 

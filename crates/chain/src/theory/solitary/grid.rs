@@ -19,15 +19,9 @@ pub(super) struct CosineGrid {
 impl CosineGrid {
     pub(super) fn new(half_window: usize, per_bead: usize) -> Self {
         let intervals = half_window * per_bead;
-        let cosines = (0..2 * intervals)
-            .map(|k| (PI * k as f64 / intervals as f64).cos())
-            .collect();
-        Self {
-            half_window,
-            intervals,
-            per_bead,
-            cosines,
-        }
+        let cosines =
+            (0..2 * intervals).map(|k| (PI * k as f64 / intervals as f64).cos()).collect();
+        Self { half_window, intervals, per_bead, cosines }
     }
 
     /// Positions of the samples, in beads from the centre.
@@ -58,10 +52,8 @@ impl CosineGrid {
     /// exact here because the integrand is smooth and vanishes at the ends.
     pub(super) fn integral(&self, samples: impl Iterator<Item = f64>) -> f64 {
         let ends = self.intervals;
-        let sum: f64 = samples
-            .enumerate()
-            .map(|(j, f)| if j == 0 || j == ends { f } else { 2.0 * f })
-            .sum();
+        let sum: f64 =
+            samples.enumerate().map(|(j, f)| if j == 0 || j == ends { f } else { 2.0 * f }).sum();
         sum / self.per_bead as f64
     }
 

@@ -80,10 +80,7 @@ struct FixedPoint {
 /// shrinks by about 1/n a step.
 fn fixed_point(grid: &CosineGrid, exponent: f64) -> Result<FixedPoint, ChainError> {
     let variance = gaussian_variance(exponent);
-    let mut overlap: Vec<f64> = grid
-        .positions()
-        .map(|x| (-0.5 * x * x / variance).exp())
-        .collect();
+    let mut overlap: Vec<f64> = grid.positions().map(|x| (-0.5 * x * x / variance).exp()).collect();
     let mut change = f64::INFINITY;
     for _ in 0..MOST_STEPS {
         let (next, _, _) = iterate(grid, exponent, &overlap);
@@ -99,11 +96,7 @@ fn fixed_point(grid: &CosineGrid, exponent: f64) -> Result<FixedPoint, ChainErro
         return Err(not_converged("solitary wave iteration", change));
     }
     let (overlap, force, speed_squared) = iterate(grid, exponent, &overlap);
-    Ok(FixedPoint {
-        overlap,
-        force,
-        speed_squared,
-    })
+    Ok(FixedPoint { overlap, force, speed_squared })
 }
 
 fn iterate(grid: &CosineGrid, exponent: f64, overlap: &[f64]) -> (Vec<f64>, Vec<f64>, f64) {
@@ -121,10 +114,7 @@ fn filtered(grid: &CosineGrid, coefficients: &[f64], times: i32) -> Vec<f64> {
 }
 
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max)
+    a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
 }
 
 fn resolved(coefficients: &[f64]) -> bool {
@@ -143,10 +133,7 @@ fn gaussian_variance(exponent: f64) -> f64 {
 fn half_window_beads(exponent: f64) -> usize {
     // e^−40 is below the rounding of 1.
     let log_rounding = 40.0;
-    (2.0 * log_rounding * gaussian_variance(exponent))
-        .sqrt()
-        .ceil() as usize
-        + 1
+    (2.0 * log_rounding * gaussian_variance(exponent)).sqrt().ceil() as usize + 1
 }
 
 /// sin(x)/x: the factor of averaging over a bead, at x half the wave number.

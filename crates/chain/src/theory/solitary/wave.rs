@@ -32,12 +32,7 @@ impl<'shape> SolitaryWave<'shape> {
         require_positive("contact stiffness", stiffness)?;
         require_positive("bead mass", mass_kg)?;
         require_positive("size of the solitary wave", peak_overlap_m)?;
-        Ok(Self {
-            shape,
-            stiffness,
-            mass_kg,
-            peak_overlap_m,
-        })
+        Ok(Self { shape, stiffness, mass_kg, peak_overlap_m })
     }
 
     /// The wave with peak contact force F_m = k δ_mⁿ in newton.

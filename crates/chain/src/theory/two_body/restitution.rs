@@ -108,13 +108,7 @@ pub fn restitution_by_series(exponent: f64, parameter: f64) -> f64 {
 /// [`ChainError::NotConverged`] if the steps become too many.
 pub fn rebound(exponent: f64, parameter: f64, end: ContactEnd) -> Result<Rebound, ChainError> {
     check_range("force exponent", exponent, 1.0, 10.0, "between 1 and 10")?;
-    check_range(
-        "damping parameter",
-        parameter,
-        0.0,
-        20.0,
-        "between 0 and 20",
-    )?;
+    check_range("damping parameter", parameter, 0.0, 20.0, "between 0 and 20")?;
     let scaled = Desingularised::new(exponent, parameter);
     let rates = |state: &State| scaled.rates(state);
     let peak = advance_until(&rates, [0.0, 1.0, 0.0], |[_, w, _]| *w <= 0.0)?;
@@ -137,11 +131,7 @@ struct Desingularised {
 impl Desingularised {
     fn new(exponent: f64, parameter: f64) -> Self {
         let half_integer = (2.0 * exponent).fract() == 0.0;
-        Self {
-            exponent,
-            parameter,
-            inverse_root: if half_integer { 2.0 } else { 8.0 },
-        }
+        Self { exponent, parameter, inverse_root: if half_integer { 2.0 } else { 8.0 } }
     }
 
     fn rates(&self, &[root, speed, _]: &State) -> State {

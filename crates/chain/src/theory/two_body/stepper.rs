@@ -66,9 +66,5 @@ fn distance(a: &State, b: &State) -> f64 {
     let gap = |(x, y): (&f64, &f64)| (x - y).abs() / x.abs().max(1.0);
     let worse = |worst: f64, gap: f64| if gap <= worst { worst } else { gap };
     let largest = a.iter().zip(b).map(gap).fold(0.0, worse);
-    if largest.is_nan() {
-        f64::INFINITY
-    } else {
-        largest
-    }
+    if largest.is_nan() { f64::INFINITY } else { largest }
 }

@@ -17,12 +17,8 @@ fn times_are_written_with_few_digits_and_a_unit() {
 
 #[test]
 fn a_motion_that_is_not_finite_says_when_where_why_and_what_to_do() {
-    let error = SolveError::NotFinite {
-        time_s: 1.234_567_89e-4,
-        body: 8,
-        contact: 8,
-        step_s: Some(2e-6),
-    };
+    let error =
+        SolveError::NotFinite { time_s: 1.234_567_89e-4, body: 8, contact: 8, step_s: Some(2e-6) };
     let text = error.to_string();
     for part in ["123.46 µs", "body 8", "contact 8", "too long", "200.00 ns"] {
         assert!(text.contains(part), "{part} is missing: {text}");

@@ -28,9 +28,7 @@ impl Term<1> for ElasticCone {
     };
 
     fn new(values: &[Option<f64>]) -> Self {
-        Self {
-            slope: values[0].unwrap_or(f64::NAN),
-        }
+        Self { slope: values[0].unwrap_or(f64::NAN) }
     }
 
     fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {

@@ -13,10 +13,6 @@ fn quantised_values_keep_the_range_to_half_a_step() {
 
 #[test]
 fn resampling_passes_over_what_is_not_finite() {
-    let found = resampled(
-        &[0.0, 1.0, 2.0],
-        &[0.0, f64::NAN, 4.0],
-        &[0.0, 1.0, 2.0, 9.0],
-    );
+    let found = resampled(&[0.0, 1.0, 2.0], &[0.0, f64::NAN, 4.0], &[0.0, 1.0, 2.0, 9.0]);
     assert_eq!(found, [0.0, 2.0, 4.0, 4.0]);
 }

@@ -11,9 +11,8 @@ fn moving(beads: usize, frames: usize) -> Animation {
 #[test]
 fn page_holds_no_reference_to_anything_outside() {
     let page = moving(5, 50).html();
-    for outside in [
-        "http:", "https:", "src=", "@import", "href=", "@DATA@", "@TITLE@", "@SCRIPT@",
-    ] {
+    for outside in ["http:", "https:", "src=", "@import", "href=", "@DATA@", "@TITLE@", "@SCRIPT@"]
+    {
         assert!(!page.contains(outside), "{outside}");
     }
 }
@@ -36,10 +35,7 @@ fn a_title_that_looks_like_a_part_of_the_page_stays_a_title() {
 
 #[test]
 fn names_cannot_break_out_of_the_script() {
-    let page = moving(2, 3)
-        .mark(0, "</script><b>\"x\\")
-        .title("<i>")
-        .html();
+    let page = moving(2, 3).mark(0, "</script><b>\"x\\").title("<i>").html();
     assert_eq!(page.matches("</script>").count(), 1);
     assert!(!page.contains("<i>"));
 }

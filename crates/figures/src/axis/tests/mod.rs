@@ -1,16 +1,8 @@
 use super::*;
 use proptest::prelude::*;
 
-const X_AXIS: Room = Room {
-    length: 180.0,
-    font: 7.0,
-    side_by_side: true,
-};
-const Y_AXIS: Room = Room {
-    length: 130.0,
-    font: 7.0,
-    side_by_side: false,
-};
+const X_AXIS: Room = Room { length: 180.0, font: 7.0, side_by_side: true };
+const Y_AXIS: Room = Room { length: 130.0, font: 7.0, side_by_side: false };
 
 fn labels(lo: f64, hi: f64, log: bool, room: &Room) -> Vec<String> {
     let found = ticks(&Scale { lo, hi, log }, room);
@@ -44,14 +36,7 @@ fn ratio_axis_around_one_has_even_decimals() {
 
 #[test]
 fn large_numbers_share_a_power_of_ten() {
-    let found = ticks(
-        &Scale {
-            lo: 0.0,
-            hi: 3.2e8,
-            log: false,
-        },
-        &X_AXIS,
-    );
+    let found = ticks(&Scale { lo: 0.0, hi: 3.2e8, log: false }, &X_AXIS);
     assert_eq!(found.exponent, Some(8));
     assert!(found.major.iter().all(|t| t.label.len() <= 3));
 }
@@ -83,17 +68,10 @@ fn check(scale: &Scale) {
     for room in [X_AXIS, Y_AXIS] {
         let found = ticks(scale, &room);
         let values: Vec<f64> = found.major.iter().map(|t| t.value).collect();
-        assert!(
-            values.windows(2).all(|w| w[1] > w[0]),
-            "{scale:?} {values:?}"
-        );
+        assert!(values.windows(2).all(|w| w[1] > w[0]), "{scale:?} {values:?}");
         assert!((2..=12).contains(&values.len()), "{scale:?} {found:?}");
         // Positions may leave the axis by the rounding of a multiple of the step.
-        let on_axis = |v: &f64| {
-            scale
-                .share(*v)
-                .is_some_and(|s| (-1e-6..=1.0 + 1e-6).contains(&s))
-        };
+        let on_axis = |v: &f64| scale.share(*v).is_some_and(|s| (-1e-6..=1.0 + 1e-6).contains(&s));
         assert!(values.iter().all(on_axis), "{scale:?} {values:?}");
         assert!(found.minor.iter().all(on_axis), "{scale:?}");
     }

@@ -30,11 +30,7 @@ fn constant_and_missing_data_still_make_an_axis() {
 
 #[test]
 fn value_inverts_share() {
-    let scale = Scale {
-        lo: 0.02,
-        hi: 3.0,
-        log: true,
-    };
+    let scale = Scale { lo: 0.02, hi: 3.0, log: true };
     let back = scale.share(scale.value(0.3)).expect("inside the axis");
     // Logarithms and an exponential, a few ulp each.
     assert!((back - 0.3).abs() < 1e-13);

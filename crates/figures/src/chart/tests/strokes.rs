@@ -2,19 +2,13 @@ use super::*;
 
 fn wave(n: u32) -> Vec<Point> {
     let at = |i: u32| f64::from(i) / f64::from(n);
-    (0..n)
-        .map(|i| Point::new(200.0 * at(i), (900.0 * at(i)).sin()))
-        .collect()
+    (0..n).map(|i| Point::new(200.0 * at(i), (900.0 * at(i)).sin())).collect()
 }
 
 #[test]
 fn a_million_points_become_a_few_per_pixel_column() {
     let thin = thinned(wave(1_000_000));
-    assert!(
-        thin.len() < 4 * (200.0 / COLUMN) as usize + 8,
-        "{}",
-        thin.len()
-    );
+    assert!(thin.len() < 4 * (200.0 / COLUMN) as usize + 8, "{}", thin.len());
 }
 
 #[test]

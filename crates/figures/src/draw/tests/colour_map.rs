@@ -2,13 +2,8 @@ use super::*;
 
 #[test]
 fn sequential_map_grows_steadily_lighter() {
-    let steps: Vec<f64> = (0..=64)
-        .map(|i| {
-            ColourMap::Sequential
-                .colour(f64::from(i) / 64.0)
-                .luminance()
-        })
-        .collect();
+    let steps: Vec<f64> =
+        (0..=64).map(|i| ColourMap::Sequential.colour(f64::from(i) / 64.0).luminance()).collect();
     assert!(steps.windows(2).all(|w| w[1] > w[0]), "{steps:?}");
 }
 

@@ -1,11 +1,6 @@
 use super::*;
 
-const FRAME: Rect = Rect {
-    x0: 0.0,
-    y0: 0.0,
-    x1: 10.0,
-    y1: 10.0,
-};
+const FRAME: Rect = Rect { x0: 0.0, y0: 0.0, x1: 10.0, y1: 10.0 };
 
 #[test]
 fn segment_through_the_frame_is_cut_at_both_edges() {

@@ -5,11 +5,7 @@ fn a_narrow_pulse_survives_shrinking() {
     let mut values = vec![0.0; 100_000];
     values[54_321] = -3.0;
     let map = HeatMap::new(100_000, 1, &values);
-    let scale = Scale {
-        lo: 0.0,
-        hi: 100_000.0,
-        log: false,
-    };
+    let scale = Scale { lo: 0.0, hi: 100_000.0, log: false };
     let columns = cells(&scale, map.x, map.columns, 500);
     let found: Vec<f64> = columns.iter().map(|c| map.strongest(c, &(0..1))).collect();
     assert_eq!(found.iter().filter(|v| **v == -3.0).count(), 1);

@@ -5,9 +5,7 @@ fn contour_of_a_bell_is_a_circle() {
     let middle = |i: usize| -3.0 + 6.0 * (i as f64 + 0.5) / 60.0;
     let bell = |x: f64, y: f64| (-0.5 * (x * x + y * y)).exp();
     let field = Field {
-        rows: (0..60)
-            .map(|j| (0..60).map(|i| bell(middle(i), middle(j))).collect())
-            .collect(),
+        rows: (0..60).map(|j| (0..60).map(|i| bell(middle(i), middle(j))).collect()).collect(),
         x: (-3.0, 3.0),
         y: (-3.0, 3.0),
     };

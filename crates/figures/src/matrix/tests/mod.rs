@@ -5,10 +5,7 @@ fn verdicts_differ_in_lightness_for_grey_print() {
     let mut levels = Verdict::ALL.map(|v| v.colour().luminance());
     levels.sort_by(f64::total_cmp);
     // The two palest are distinguished by their symbols.
-    assert!(
-        levels[1] - levels[0] > 0.08 && levels[2] - levels[1] > 0.2,
-        "{levels:?}"
-    );
+    assert!(levels[1] - levels[0] > 0.08 && levels[2] - levels[1] > 0.2, "{levels:?}");
 }
 
 #[test]

@@ -18,10 +18,7 @@ fn beads_never_leave_the_drawing() {
                 ..RigDrawing::default()
             };
             let drawing = Drawing::new(&rig);
-            assert!(
-                drawing.back + APART + BAR < WIDTH,
-                "{beads} {sensor_bead:?}"
-            );
+            assert!(drawing.back + APART + BAR < WIDTH, "{beads} {sensor_bead:?}");
             assert!(drawing.diameter >= SMALLEST, "{beads} {sensor_bead:?}");
             assert!(drawing.beads.windows(2).all(|w| w[1].0 > w[0].0));
         }
@@ -30,11 +27,7 @@ fn beads_never_leave_the_drawing() {
 
 #[test]
 fn long_rows_keep_both_ends_and_the_sensor() {
-    let rig = RigDrawing {
-        beads: 500,
-        sensor_bead: Some(200),
-        ..RigDrawing::default()
-    };
+    let rig = RigDrawing { beads: 500, sensor_bead: Some(200), ..RigDrawing::default() };
     let drawing = Drawing::new(&rig);
     for bead in [1, 199, 200, 201, 500] {
         assert!(drawing.bead(bead).is_some(), "{bead}");
@@ -44,13 +37,7 @@ fn long_rows_keep_both_ends_and_the_sensor() {
 
 #[test]
 fn every_contact_belongs_to_one_group() {
-    for wet_contacts in [
-        None,
-        Some((0, 40)),
-        Some((7, 40)),
-        Some((3, 5)),
-        Some((50, 60)),
-    ] {
+    for wet_contacts in [None, Some((0, 40)), Some((7, 40)), Some((3, 5)), Some((50, 60))] {
         let rig = RigDrawing {
             beads: 40,
             striker_ratio: Some(1.0),

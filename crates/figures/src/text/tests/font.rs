@@ -2,9 +2,7 @@ use super::*;
 
 #[test]
 fn digits_have_equal_width_so_tick_labels_line_up() {
-    let widths: Vec<f64> = ('0'..='9')
-        .map(|c| GlyphId::of(Face::Regular, c).advance())
-        .collect();
+    let widths: Vec<f64> = ('0'..='9').map(|c| GlyphId::of(Face::Regular, c).advance()).collect();
     assert!(widths.iter().all(|w| *w == widths[0]));
 }
 

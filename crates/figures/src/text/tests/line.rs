@@ -26,10 +26,7 @@ fn what_would_be_too_small_to_read_is_cut_instead() {
         // Rounding of one division and product.
         assert!(smallest.fold(9.0, f64::min) > LEAST_SIZE - 1e-9);
         let count = |line: &TextLine| -> usize {
-            line.spans
-                .iter()
-                .map(|span| span.text.chars().count())
-                .sum()
+            line.spans.iter().map(|span| span.text.chars().count()).sum()
         };
         assert!(count(&line) < count(&whole));
         // What is not cut may be wider by a part in a thousand.
@@ -46,12 +43,6 @@ fn superscripts_raise_the_line() {
 #[test]
 fn live_text_keeps_scripts_as_shifted_runs() {
     let text = TextLine::new("$v_0$ < 1", 10.0).live(Anchor::CENTRE);
-    assert!(
-        text.contains("text-anchor=\"middle\"") && text.contains("> &lt; 1</tspan>"),
-        "{text}"
-    );
-    assert!(
-        text.contains("font-style=\"italic\">v</tspan><tspan dy="),
-        "{text}"
-    );
+    assert!(text.contains("text-anchor=\"middle\"") && text.contains("> &lt; 1</tspan>"), "{text}");
+    assert!(text.contains("font-style=\"italic\">v</tspan><tspan dy="), "{text}");
 }

@@ -1,11 +1,7 @@
 use super::*;
 
 fn run(text: &str, style: Face, script: Script) -> TextRun {
-    TextRun {
-        text: text.into(),
-        style,
-        script,
-    }
+    TextRun { text: text.into(), style, script }
 }
 
 #[test]
@@ -29,22 +25,13 @@ fn powers_of_ten_have_a_true_minus_sign() {
 
 #[test]
 fn file_names_outside_dollars_are_literal() {
-    assert_eq!(
-        parse("hertz_x^2-{a}"),
-        vec![run("hertz_x^2-{a}", Face::Regular, Script::Base)]
-    );
+    assert_eq!(parse("hertz_x^2-{a}"), vec![run("hertz_x^2-{a}", Face::Regular, Script::Base)]);
 }
 
 #[test]
 fn greek_commands_become_letters() {
-    assert_eq!(
-        parse(r"$\alpha$"),
-        vec![run("α", Face::Italic, Script::Base)]
-    );
-    assert_eq!(
-        parse(r"$\Delta$"),
-        vec![run("Δ", Face::Regular, Script::Base)]
-    );
+    assert_eq!(parse(r"$\alpha$"), vec![run("α", Face::Italic, Script::Base)]);
+    assert_eq!(parse(r"$\Delta$"), vec![run("Δ", Face::Regular, Script::Base)]);
 }
 
 #[test]

@@ -21,10 +21,7 @@ fn of_row(more: &[&str]) -> FitResult {
 #[test]
 fn another_pair_of_two_times_is_told_or_how_to_look_for_it() {
     let reported = of_row(&[]).pair_warning().unwrap();
-    assert!(
-        reported.contains("--starts") && reported.contains("gauge"),
-        "{reported}"
-    );
+    assert!(reported.contains("--starts") && reported.contains("gauge"), "{reported}");
     let bounds = ["--bounds=wet.K=5e9:2e10", "--bounds=wet.A=1e-7:1e-5"];
     let found = of_row(&[&bounds[..], &["--starts=10"]].concat());
     assert_eq!(found.pair_warning(), None);

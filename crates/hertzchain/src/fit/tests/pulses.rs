@@ -11,38 +11,21 @@ const DENSER: usize = 50;
 /// hundredth of what the errors looked for would be.
 fn recorded(experiment: &Experiment, speed_m_s: f64) -> Pulses {
     let (plan, _) = Plan::from_experiment(experiment, Some(speed_m_s)).unwrap();
-    let sensors = [
-        Sensor::Bead(plan.sensor_bead),
-        Sensor::Contact(plan.chain.beads.len()),
-    ];
+    let sensors = [Sensor::Bead(plan.sensor_bead), Sensor::Contact(plan.chain.beads.len())];
     let fine_s = INTERVAL_S / DENSER as f64;
-    let mut plan = plan
-        .with_accuracy(1e-8)
-        .watching(sensors.to_vec(), Some(fine_s));
+    let mut plan = plan.with_accuracy(1e-8).watching(sensors.to_vec(), Some(fine_s));
     plan.duration_s = Some(2.5e-3);
     let trace = shoot(&plan).unwrap().trace.unwrap();
     let numbers = experiment.campaign().amplifier;
     let mut amplifier = Amplifier::new(&numbers, fine_s);
-    let [bead, wall] = &trace.columns[..] else {
-        unreachable!("two sensors")
-    };
-    let signal: Vec<f64> = bead
-        .iter()
-        .zip(wall)
-        .map(|(b, w)| amplifier.next(*b, *w))
-        .collect();
+    let [bead, wall] = &trace.columns[..] else { unreachable!("two sensors") };
+    let signal: Vec<f64> = bead.iter().zip(wall).map(|(b, w)| amplifier.next(*b, *w)).collect();
     let quiet = [0.0; 400];
-    let samples = quiet
-        .iter()
-        .chain(signal.iter().step_by(DENSER))
-        .enumerate();
+    let samples = quiet.iter().chain(signal.iter().step_by(DENSER)).enumerate();
     // A fixed sequence without correlation stands for noise.
     let noise = |at: usize| 2e-5 * ((at * at * 7919 % 1009) as f64 / 504.0 - 1.0);
     let volts: Vec<f64> = samples.map(|(at, volts)| volts + noise(at)).collect();
-    let speed = Estimate {
-        value: speed_m_s,
-        sigma: 0.0,
-    };
+    let speed = Estimate { value: speed_m_s, sigma: 0.0 };
     Pulses::of("shot", (Some(speed), None), INTERVAL_S, &[volts]).unwrap()
 }
 
@@ -70,12 +53,8 @@ fn the_model_s_signals_pass_the_filter_as_recorded_ones_do() {
 #[test]
 fn another_order_kind_and_corner_of_the_low_pass_are_options_or_free() {
     let plain = hertzchain_experiment::preset("dry").unwrap();
-    let rig = plain
-        .with_low_pass(Some(60e3), Some("third"), Some("bessel"))
-        .unwrap();
-    let model = plain
-        .with_low_pass(None, Some("third"), Some("bessel"))
-        .unwrap();
+    let rig = plain.with_low_pass(Some(60e3), Some("third"), Some("bessel")).unwrap();
+    let model = plain.with_low_pass(None, Some("third"), Some("bessel")).unwrap();
     let found = best_fit(&rig, &model, &["low_pass", "sensor_gain"]);
     // The noise leaves the corner open by some 1e-4.
     assert!((found[0] / 60e3 - 1.0).abs() < 1e-3, "{found:?}");

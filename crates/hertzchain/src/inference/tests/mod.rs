@@ -19,10 +19,7 @@ fn a_number_that_use_names_and_the_table_has_not_is_told() {
     };
     let why = reported(&["--use=incident,returning-ratio"]).unwrap();
     let column = Observable::ReturningOverPassing.column();
-    assert!(
-        why.starts_with(&format!("a.csv: --use asks for `{column}`")),
-        "{why}"
-    );
+    assert!(why.starts_with(&format!("a.csv: --use asks for `{column}`")), "{why}");
     // no user asked for reflected times by name.
     assert_eq!(reported(&[]), None);
     assert_eq!(reported(&["--use=incident"]), None);
@@ -31,10 +28,7 @@ fn a_number_that_use_names_and_the_table_has_not_is_told() {
 #[test]
 fn a_short_name_that_is_set_is_told_with_its_path() {
     for (name, words) in [
-        (
-            "B",
-            "write --set contacts[0].laws.damping_cubic.coefficient=VALUE",
-        ),
+        ("B", "write --set contacts[0].laws.damping_cubic.coefficient=VALUE"),
         ("eta", "write --set materials.aisi316.shear_viscosity=VALUE"),
         ("wall_gain", "--free alone knows it"),
         ("nothing", "there is no number `nothing`"),
@@ -44,10 +38,7 @@ fn a_short_name_that_is_set_is_told_with_its_path() {
         let Err(Failure::User(why)) = experiment(&modelled, None) else {
             unreachable!("{name} was set")
         };
-        assert!(
-            why.starts_with(&format!("--set {name}: ")) && why.contains(words),
-            "{why}"
-        );
+        assert!(why.starts_with(&format!("--set {name}: ")) && why.contains(words), "{why}");
     }
     let path = ["--set=damping_cubic.coefficient=50 kg s/m^2"];
     assert!(experiment(&fit(&path).modelled, None).is_ok());

@@ -37,10 +37,7 @@ fn measured(shots: usize) -> Measurement {
     };
     Measurement {
         shots: vec![shot; shots],
-        refused: vec![MeasureError::Shots(
-            "short.npz".to_owned(),
-            "has 3 speeds".to_owned(),
-        )],
+        refused: vec![MeasureError::Shots("short.npz".to_owned(), "has 3 speeds".to_owned())],
         ..Measurement::default()
     }
 }

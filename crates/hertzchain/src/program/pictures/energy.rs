@@ -23,59 +23,19 @@ const fn part(
     look: (Colour, Dash),
     always: bool,
 ) -> Part {
-    Part {
-        name,
-        of,
-        look,
-        always,
-    }
+    Part { name, of, look, always }
 }
 
 /// No two parts have the same colour; those that most shots show differ by dash too.
 const PARTS: [Part; 8] = [
-    part(
-        "kinetic",
-        |b| b.kinetic_j,
-        (Colour::BLUE, Dash::Solid),
-        true,
-    ),
-    part(
-        "elastic",
-        |b| b.elastic_j,
-        (Colour::VERMILION, Dash::Dashed),
-        true,
-    ),
-    part(
-        "lost",
-        dissipated_j,
-        (Colour::GREEN, Dash::DashDotted),
-        false,
-    ),
-    part(
-        "clipped",
-        |b| b.clipped_j,
-        (Colour::GREY, Dash::DashDotted),
-        false,
-    ),
-    part(
-        "gravity",
-        |b| b.gravity_j,
-        (Colour::OCHRE, Dash::Solid),
-        false,
-    ),
-    part(
-        "preload",
-        |b| b.preload_j,
-        (Colour::PURPLE, Dash::Solid),
-        false,
-    ),
+    part("kinetic", |b| b.kinetic_j, (Colour::BLUE, Dash::Solid), true),
+    part("elastic", |b| b.elastic_j, (Colour::VERMILION, Dash::Dashed), true),
+    part("lost", dissipated_j, (Colour::GREEN, Dash::DashDotted), false),
+    part("clipped", |b| b.clipped_j, (Colour::GREY, Dash::DashDotted), false),
+    part("gravity", |b| b.gravity_j, (Colour::OCHRE, Dash::Solid), false),
+    part("preload", |b| b.preload_j, (Colour::PURPLE, Dash::Solid), false),
     part("stop", |b| b.stop_j, (Colour::SKY, Dash::Solid), false),
-    part(
-        "put in",
-        |b| b.start_j + b.driven_j,
-        (Colour::BLACK, Dash::Dotted),
-        true,
-    ),
+    part("put in", |b| b.start_j + b.driven_j, (Colour::BLACK, Dash::Dotted), true),
 ];
 
 fn dissipated_j(budget: &Budget) -> f64 {
@@ -97,16 +57,10 @@ pub(crate) fn energy(budgets: &[Budget], units: Units) -> Figure {
     let chart = PARTS.iter().filter(seen).fold(chart, |chart, part| {
         let scaled: Vec<f64> = values(part.of).iter().map(|e| e * factor).collect();
         let (colour, dash) = part.look;
-        chart.with(
-            Series::line(part.name, &times, &scaled)
-                .colour(colour)
-                .dash(dash),
-        )
+        chart.with(Series::line(part.name, &times, &scaled).colour(colour).dash(dash))
     });
     let missing = values(|budget| budget.relative_residual());
-    let residual = Series::line("", &times, &missing)
-        .colour(Colour::BLACK)
-        .width(0.8);
+    let residual = Series::line("", &times, &missing).colour(Colour::BLACK).width(0.8);
     Figure::single_column(105.0)
         .letters()
         .share_x()
@@ -124,13 +78,7 @@ fn scale(largest_j: f64, units: Units) -> (f64, String) {
     if units == Units::Dimensionless {
         return (1.0, "Energy".into());
     }
-    let prefixes = [
-        (1e3, "kJ"),
-        (1.0, "J"),
-        (1e-3, "mJ"),
-        (1e-6, "µJ"),
-        (1e-9, "nJ"),
-    ];
+    let prefixes = [(1e3, "kJ"), (1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ")];
     let fitting = prefixes.iter().find(|(size, _)| largest_j >= *size);
     let (size, unit) = fitting.copied().unwrap_or((1.0, "J"));
     (1.0 / size, format!("Energy ({unit})"))

@@ -18,11 +18,7 @@ fn rough_derivatives_are_told_with_the_parameter_and_what_to_do() {
         disagreement,
     };
     let reported = rough(&free, &with(vec![0.02, 0.43])).unwrap();
-    for word in [
-        "wet.A at 0.31 m/s differ by 43 %",
-        "--method profile",
-        "--accuracy",
-    ] {
+    for word in ["wet.A at 0.31 m/s differ by 43 %", "--method profile", "--accuracy"] {
         assert!(reported.contains(word), "{reported}");
     }
     assert_eq!(rough(&free, &with(vec![0.04, 1e-6])), None);

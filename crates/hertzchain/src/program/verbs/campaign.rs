@@ -97,11 +97,7 @@ impl Shown {
         let template = "{wide_bar} {pos}/{len} shots, {per_sec:.1}, {eta} left";
         let style = ProgressStyle::with_template(template);
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self {
-            bar,
-            begun: Instant::now(),
-            drawn: std::io::stderr().is_terminal(),
-        }
+        Self { bar, begun: Instant::now(), drawn: std::io::stderr().is_terminal() }
     }
 
     fn show(&self, progress: Progress) {

@@ -10,9 +10,7 @@ use serde_json::json;
 /// Runs the verb.
 pub(crate) fn run(arguments: &Check) -> Result<(), Failure> {
     if arguments.input.file.is_none() && arguments.input.preset.is_none() {
-        return Err(Failure::User(
-            "check needs an experiment: FILE or --preset NAME".into(),
-        ));
+        return Err(Failure::User("check needs an experiment: FILE or --preset NAME".into()));
     }
     let experiment = input::open(&arguments.input)?;
     let speed = input::speed(arguments.speed.as_ref(), &experiment)?;

@@ -16,10 +16,8 @@ const SHOWN: usize = 15;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let data = inference::data(
-        arguments.data.as_deref().unwrap_or(Path::new("")),
-        &arguments.measured,
-    )?;
+    let data =
+        inference::data(arguments.data.as_deref().unwrap_or(Path::new("")), &arguments.measured)?;
     let speeds = design::speeds(&data, arguments)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
@@ -50,15 +48,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn text(problem: &CurveProblem, run_design: &DesignResult) -> String {
     let (candidates, found) = (&run_design.candidates, &run_design.design);
     let names = &run_design.names;
-    let now = names
-        .iter()
-        .zip(&found.before)
-        .zip(&run_design.units)
-        .map(|((name, sd), unit)| {
-            format!("{name} ± {} {unit}", sd_text(*sd))
-                .trim_end()
-                .to_owned()
-        });
+    let now = names.iter().zip(&found.before).zip(&run_design.units).map(|((name, sd), unit)| {
+        format!("{name} ± {} {unit}", sd_text(*sd)).trim_end().to_owned()
+    });
     let now: Vec<String> = now.collect();
     let mut head = vec!["measure next".to_owned()];
     let units = names.iter().zip(&run_design.units);
@@ -95,9 +87,8 @@ fn text(problem: &CurveProblem, run_design: &DesignResult) -> String {
 
 /// Before all else: a ranking by a model that the data so far do not follow.
 fn unfit(run_design: &DesignResult) -> String {
-    misfit(&run_design.goodness).map_or(String::new(), |misfit| {
-        format!("warning: {misfit}; nor is its ranking.\n\n")
-    })
+    misfit(&run_design.goodness)
+        .map_or(String::new(), |misfit| format!("warning: {misfit}; nor is its ranking.\n\n"))
 }
 
 /// What standard errors of open combinations are worth, and what would close them.
@@ -106,9 +97,7 @@ fn warnings(problem: &CurveProblem, run_design: &DesignResult) -> String {
     if undetermined.is_empty() {
         return String::new();
     }
-    let open = undetermined
-        .iter()
-        .map(|words| format!("  Not determined so far: {words}.\n"));
+    let open = undetermined.iter().map(|words| format!("  Not determined so far: {words}.\n"));
     let advice = run_design.advice.iter();
     let advice = advice.map(|advice| format!("  What would help: {advice}.\n"));
     let unidentifiable = run_design.unidentifiable(problem).into_iter();

@@ -28,9 +28,7 @@ pub(crate) fn run(arguments: &Explore) -> Result<(), Failure> {
         if !arguments.no_browser
             && let Err(error) = hertzchain_explore::open(address)
         {
-            print::note(&format!(
-                "warning: no browser opened ({error}): open this address"
-            ));
+            print::note(&format!("warning: no browser opened ({error}): open this address"));
         }
     };
     serve(settings, Arc::new(Program), opened).map_err(|error| Failure::User(error.to_string()))
@@ -90,11 +88,7 @@ fn without(found: Value, folder: &str) -> Value {
         Value::Array(all) => all.into_iter().map(|one| without(one, folder)).collect(),
         Value::Object(all) => {
             let entries = all.into_iter();
-            Value::Object(
-                entries
-                    .map(|(key, one)| (key, without(one, folder)))
-                    .collect(),
-            )
+            Value::Object(entries.map(|(key, one)| (key, without(one, folder))).collect())
         }
         other => other,
     }
@@ -153,24 +147,19 @@ fn fit_of(text: &str, table: &str, options: &Value) -> Result<Value, Failure> {
         .iter()
         .map(|number| json!({ "name": number.name(), "path": number.path() }))
         .collect();
-    let residuals = found
-        .curve
-        .predicted
-        .iter()
-        .zip(&data.rows)
-        .map(|(predicted, row)| {
-            // Predictions stand in the order of the observables.
-            let [there, back, ..] = *predicted;
-            let of = |what, predicted: Option<f64>| {
-                let measured = row.value(what)?;
-                Some(json!([measured.value - predicted?, measured.sigma]))
-            };
-            json!({
-                "speed_m_s": row.speed_m_s.value,
-                "tof_incident_s": of(Observable::Incident, there),
-                "tof_reflected_s": of(Observable::Reflected, back),
-            })
-        });
+    let residuals = found.curve.predicted.iter().zip(&data.rows).map(|(predicted, row)| {
+        // Predictions stand in the order of the observables.
+        let [there, back, ..] = *predicted;
+        let of = |what, predicted: Option<f64>| {
+            let measured = row.value(what)?;
+            Some(json!([measured.value - predicted?, measured.sigma]))
+        };
+        json!({
+            "speed_m_s": row.speed_m_s.value,
+            "tof_incident_s": of(Observable::Incident, there),
+            "tof_reflected_s": of(Observable::Reflected, back),
+        })
+    });
     Ok(fit::joined(
         json!({ "places": places, "residuals": residuals.collect::<Value>() }),
         fit::json(&found, &options),

@@ -18,11 +18,7 @@ pub(crate) fn run(arguments: &Laws) -> Result<(), Failure> {
 }
 
 fn as_text(info: &LawInfo) -> String {
-    let gate = if info.gated {
-        "while the contact is closed"
-    } else {
-        "always, also across gaps"
-    };
+    let gate = if info.gated { "while the contact is closed" } else { "always, also across gaps" };
     let mut rows = vec![
         ("equation".to_owned(), info.equation.to_owned()),
         ("kind".to_owned(), nature(info).to_owned()),
@@ -30,11 +26,7 @@ fn as_text(info: &LawInfo) -> String {
         ("validity".to_owned(), info.validity.to_owned()),
         ("source".to_owned(), source(info)),
     ];
-    rows.extend(
-        info.parameters
-            .iter()
-            .map(|p| (p.name.to_owned(), parameter(p))),
-    );
+    rows.extend(info.parameters.iter().map(|p| (p.name.to_owned(), parameter(p))));
     format!("{}\n{}", print::heading(info.name), format::pairs(&rows))
 }
 

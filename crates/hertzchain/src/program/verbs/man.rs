@@ -17,10 +17,7 @@ pub(crate) fn run(out: Option<&Path>) -> Result<(), Failure> {
     };
     let mut folder = Folder::open(out)?;
     folder.write("hertzchain.1", &page(program.clone())?)?;
-    for verb in program
-        .get_subcommands()
-        .filter(|verb| verb.get_name() != "help")
-    {
+    for verb in program.get_subcommands().filter(|verb| verb.get_name() != "help") {
         let name = format!("hertzchain-{}", verb.get_name());
         let titled = verb.clone().display_name(name.clone());
         folder.write(&format!("{name}.1"), &page(titled)?)?;

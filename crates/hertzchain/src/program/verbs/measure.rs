@@ -26,11 +26,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
     report(&measured);
-    note_low_pass(
-        &measured,
-        &options,
-        arguments.picking.low_pass.map(|corner| corner.0),
-    );
+    note_low_pass(&measured, &options, arguments.picking.low_pass.map(|corner| corner.0));
     match arguments.json {
         true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
         false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
@@ -69,9 +65,7 @@ fn report(measured: &Measurement) {
         print::note(&format!("--shots: {line}"));
     }
     if let more @ 1.. = measured.unmatched.len().saturating_sub(MOST_LINES) {
-        print::note(&format!(
-            "--shots: … and {more} more; measured.json has all"
-        ));
+        print::note(&format!("--shots: … and {more} more; measured.json has all"));
     }
     for Note { text, files } in &measured.notes {
         let first = files.first().map(|file| file.display().to_string());
@@ -79,10 +73,7 @@ fn report(measured: &Measurement) {
             0 | 1 => String::new(),
             files => format!(" and {} more", files - 1),
         };
-        print::note(&format!(
-            "note: {}{more}: {text}",
-            first.unwrap_or_default()
-        ));
+        print::note(&format!("note: {}{more}: {text}", first.unwrap_or_default()));
     }
 }
 
@@ -107,9 +98,7 @@ fn write(
     (curves, reference): (&Curves, &str),
 ) -> Result<(), Failure> {
     folder.write_with("shots.csv", |out| write_shots(&measured.shots, out))?;
-    folder.write_with("measured.json", |out| {
-        measure::write_json(measured, curves, out)
-    })?;
+    folder.write_with("measured.json", |out| measure::write_json(measured, curves, out))?;
     if let Some(figure) = pictures::signals(&measured.examples) {
         folder.figure("signals", &figure)?;
     }

@@ -14,10 +14,7 @@ use std::path::Path;
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folders: Vec<&Path> = arguments.folders.iter().map(AsRef::as_ref).collect();
-    match folders
-        .iter()
-        .find(|folder| folder.join(CAMPAIGN_FILE).is_file())
-    {
+    match folders.iter().find(|folder| folder.join(CAMPAIGN_FILE).is_file()) {
         Some(folder) => campaign(folder, &folders, &arguments.out),
         None => sweep(&folders, &arguments.out),
     }

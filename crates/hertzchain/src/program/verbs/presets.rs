@@ -14,10 +14,7 @@ pub(crate) fn run(arguments: &Presets) -> Result<(), Failure> {
     let heads = [
         ("The paper's chains", presets()),
         ("Examples", examples()),
-        (
-            "Campaigns, for `hertzchain campaign --preset NAME`",
-            campaigns(),
-        ),
+        ("Campaigns, for `hertzchain campaign --preset NAME`", campaigns()),
     ];
     let mut text = String::new();
     for (head, list) in heads {

@@ -46,9 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let assumed = lines(input::assumed(&arguments.input).into_iter().collect());
         print::print(&(assumed + &report::text(&experiment, &plan, &shot)))?;
     }
-    folder.map_or(Ok(()), |folder| {
-        traces::write(folder, arguments, &experiment, &plan, &shot)
-    })
+    folder.map_or(Ok(()), |folder| traces::write(folder, arguments, &experiment, &plan, &shot))
 }
 
 /// Announces a shot that takes long.

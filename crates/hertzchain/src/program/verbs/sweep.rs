@@ -62,11 +62,7 @@ impl Swept {
             points.push(point);
         };
         let (result, calibration) = batch.run_each(Shard::WHOLE, progress, take);
-        Self {
-            points,
-            result,
-            calibration,
-        }
+        Self { points, result, calibration }
     }
 }
 
@@ -108,10 +104,7 @@ fn bar(shots: u64) -> ProgressBar {
 /// Every speed failed: the sweep did.
 fn report_failed(swept: &Swept, units: Units) -> Result<(), Failure> {
     let style = Style { digits: 16, units };
-    let failed = swept
-        .points
-        .iter()
-        .filter_map(|point| Some((point, point.shot.as_ref().err()?)));
+    let failed = swept.points.iter().filter_map(|point| Some((point, point.shot.as_ref().err()?)));
     let of_speed = |error: &StudyError| match error {
         StudyError::Mistakes(mistakes) => failure::of_speed(mistakes),
         _ => None,
@@ -166,10 +159,7 @@ fn show(
 
 /// Why no speed has a time of flight.
 fn no_flight(swept: &Swept, plan: &Plan, units: Units) -> String {
-    let first = swept
-        .points
-        .iter()
-        .find_map(|point| point.shot.as_ref().ok());
+    let first = swept.points.iter().find_map(|point| point.shot.as_ref().ok());
     match first.map(|shot| &shot.passage) {
         Some(Err(reason)) => {
             let reason = missing::reason(&plan.chain.far, units, reason);
@@ -186,10 +176,7 @@ fn print_warnings(experiment: &Experiment, swept: &Swept) {
         return;
     };
     if let Ok((_, warnings)) = experiment.chain(Some(first.speed_m_s)) {
-        let style = Style {
-            digits: 16,
-            units: experiment.units(),
-        };
+        let style = Style { digits: 16, units: experiment.units() };
         let speed = style.quantity(first.speed_m_s, "m/s");
         failure::print_option_warnings(&format!("--speeds, {speed}"), &warnings);
     }

@@ -41,13 +41,7 @@ impl Ball {
             all.clone().map(entry).collect()
         };
         let correlations: Vec<Vec<f64>> = all.clone().map(row).collect();
-        Ok(Self {
-            lower: cholesky(&correlations).ok_or(no_room())?,
-            centre,
-            sd,
-            reach,
-            parameters,
-        })
+        Ok(Self { lower: cholesky(&correlations).ok_or(no_room())?, centre, sd, reach, parameters })
     }
 
     /// A point in independent standard errors: by forward substitution.

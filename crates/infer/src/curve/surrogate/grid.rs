@@ -36,22 +36,14 @@ impl Grid {
         covariance: &Covariance,
     ) -> Result<Self, InferError> {
         let count = fit.point.len();
-        let nodes = *count
-            .checked_sub(1)
-            .and_then(|at| NODES.get(at))
-            .ok_or(too_many(count))?;
+        let nodes = *count.checked_sub(1).and_then(|at| NODES.get(at)).ok_or(too_many(count))?;
         let parameters = problem.parameters().iter().enumerate();
         let sides = parameters
             .map(|(at, parameter)| side(parameter, fit.point[at], reach, covariance.sd[at]))
             .collect::<Result<_, _>>()?;
-        let mut grid = Self {
-            sides,
-            nodes,
-            table: Vec::new(),
-        };
-        let points: Vec<Vec<f64>> = (0..nodes.pow(count as u32))
-            .map(|number| grid.node(number))
-            .collect();
+        let mut grid = Self { sides, nodes, table: Vec::new() };
+        let points: Vec<Vec<f64>> =
+            (0..nodes.pow(count as u32)).map(|number| grid.node(number)).collect();
         for curve in problem.all_curves(&points) {
             let curve = curve.map_err(model_fails)?;
             let ln = |row: &Predicted| row.map(|value| value.map_or(f64::NAN, f64::ln));

@@ -197,10 +197,7 @@ impl Surrogate {
     /// # Errors
     /// See [`InferError`].
     pub fn with_data(&self, data: Data) -> Result<Self, InferError> {
-        Ok(Self {
-            problem: self.problem.with_data(data)?,
-            ..self.clone()
-        })
+        Ok(Self { problem: self.problem.with_data(data)?, ..self.clone() })
     }
 }
 
@@ -277,9 +274,8 @@ impl Problem for Surrogate {
     }
 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
-        let curves: Vec<Option<Vec<Predicted>>> = (points.par_iter())
-            .map(|point| self.form.curve(point))
-            .collect();
+        let curves: Vec<Option<Vec<Predicted>>> =
+            (points.par_iter()).map(|point| self.form.curve(point)).collect();
         let chosen = |inside: bool| {
             let pairs = points.iter().zip(&curves);
             let own = pairs.filter(move |(_, curve)| curve.is_some() == inside);

@@ -156,9 +156,8 @@ fn computed(
 impl Polynomial {
     /// By least squares on all curves of a study.
     fn of(study: &Study, problem: &CurveProblem, terms: Vec<Term>) -> Self {
-        let white: Vec<Vec<f64>> = (study.points.iter())
-            .map(|point| study.ball.whitened(point))
-            .collect();
+        let white: Vec<Vec<f64>> =
+            (study.points.iter()).map(|point| study.ball.whitened(point)).collect();
         let speeds = study.curves.first().map_or(0, Vec::len);
         let outputs = outputs(problem, speeds);
         let mut polynomial = Self {
@@ -216,22 +215,14 @@ impl Polynomial {
 /// Every product of Chebyshev's polynomials up to a degree in all, the constant
 /// first, factors before what they are factors of.
 fn terms(parameters: usize, degree: usize) -> Vec<Term> {
-    let constant = Term {
-        of: 0,
-        parameter: 0,
-        degree: 0,
-    };
+    let constant = Term { of: 0, parameter: 0, degree: 0 };
     let mut found = vec![(constant, 0)];
     for parameter in 0..parameters {
         for of in 0..found.len() {
             let used = found[of].1;
             for own in 1..=degree - used {
                 let degree = own;
-                let term = Term {
-                    of,
-                    parameter,
-                    degree,
-                };
+                let term = Term { of, parameter, degree };
                 found.push((term, used + own));
             }
         }
@@ -261,10 +252,8 @@ fn outputs(problem: &CurveProblem, speeds: usize) -> Vec<(usize, usize)> {
 fn ranges(points: &[Vec<f64>]) -> Vec<(f64, f64)> {
     let range = |at: usize| {
         let values = || points.iter().map(|point| point[at]);
-        let (least, most) = (
-            values().fold(f64::INFINITY, f64::min),
-            values().fold(f64::NEG_INFINITY, f64::max),
-        );
+        let (least, most) =
+            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
         let half = 0.5 * (most - least);
         (0.5 * (least + most), if half > 0.0 { half } else { 1.0 })
     };

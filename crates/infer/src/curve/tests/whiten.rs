@@ -10,10 +10,7 @@ fn errors(sigmas: &[f64], moved: &[f64], freedom: f64) -> Errors {
 
 #[test]
 fn without_an_error_of_the_speed_each_has_its_own_sigma() {
-    let white = whiten(
-        &[1.0, -6.0],
-        &errors(&[0.5, 3.0], &[0.0, 0.0], f64::INFINITY),
-    );
+    let white = whiten(&[1.0, -6.0], &errors(&[0.5, 3.0], &[0.0, 0.0], f64::INFINITY));
     assert_eq!(white, [(2.0, 0.5_f64.ln()), (-2.0, 3.0_f64.ln())]);
 }
 

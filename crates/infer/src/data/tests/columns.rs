@@ -22,9 +22,7 @@ fn errors_are_found_under_the_names_of_both_tables_of_measure() {
 #[test]
 fn a_missing_column_is_told_with_what_is_there_instead() {
     let reported = |text: &str, wanted: &[Observable]| {
-        Columns::of(&titles(text), wanted, "a.csv")
-            .unwrap_err()
-            .to_string()
+        Columns::of(&titles(text), wanted, "a.csv").unwrap_err().to_string()
     };
     let there = reported("speed_m_s,tof_incident_s", &[Observable::WallOverPassing]);
     let expected =
@@ -34,10 +32,7 @@ fn a_missing_column_is_told_with_what_is_there_instead() {
     let expected = "expected times in s; `tof_incident_us` is not read, since its title does not end with the SI unit";
     assert!(other.ends_with(expected), "{other}");
     let neither = reported("speed_m_s,speed_error_m_s", &Observable::ALL);
-    assert!(
-        neither.ends_with("expected times in s or ratios of peaks"),
-        "{neither}"
-    );
+    assert!(neither.ends_with("expected times in s or ratios of peaks"), "{neither}");
 }
 
 #[test]

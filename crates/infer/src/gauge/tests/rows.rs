@@ -70,9 +70,7 @@ fn an_end_that_bends_is_not_taken_for_straight() {
         slope += bend;
         ln_a.push(ln_a[ln_a.len() - 1] + 0.56 * slope);
     }
-    let mut rows: Vec<Row> = (0..6)
-        .map(|at| (0.56 * at as f64, vec![ln_a[at]]))
-        .collect();
+    let mut rows: Vec<Row> = (0..6).map(|at| (0.56 * at as f64, vec![ln_a[at]])).collect();
     // A pair of A a fifth smaller straightens the first bend to less than nothing.
     rows[0].1.insert(0, ln_a[0] - 0.2);
     assert!(!smoothest(&rows)[0].is_clear);
@@ -85,12 +83,7 @@ fn an_end_that_bends_is_not_taken_for_straight() {
 /// Two lines side by side.
 #[test]
 fn two_ways_as_straight_leave_the_choice_open() {
-    let row = |at: usize| {
-        (
-            at as f64,
-            vec![0.5 * at as f64, 1.0 + 0.4 * at as f64 + 1e-3],
-        )
-    };
+    let row = |at: usize| (at as f64, vec![0.5 * at as f64, 1.0 + 0.4 * at as f64 + 1e-3]);
     let rows: Vec<Row> = (0..9).map(row).collect();
     let bent = |(at, (x, pairs)): (usize, Row)| {
         let wave = 0.01 * (at as f64).sin();

@@ -7,11 +7,7 @@ fn line(residual: impl Fn(f64) -> Option<f64>) -> Vec<Place> {
 
 fn at_ln(ln_a: f64, residual: &impl Fn(f64) -> Option<f64>) -> Place {
     let residuals = residual(ln_a).map(|r| vec![0.0, r]);
-    Place {
-        ln_a,
-        ln_k: 0.0,
-        residuals,
-    }
+    Place { ln_a, ln_k: 0.0, residuals }
 }
 
 fn walked(residual: impl Fn(f64) -> Option<f64>) -> Vec<Place> {
@@ -35,13 +31,7 @@ fn near(line: &[Place], ln_a: f64) -> bool {
 fn crossings_between_jumps_and_touched_zeros_are_found() {
     let crossed = walked(|x| Some(100.0 * (x - 0.5) * (x - 2.03)));
     assert!(near(&crossed, 0.5) && near(&crossed, 2.03));
-    let hidden = walked(|x| {
-        Some(if x < 1.01 {
-            100.0 * (0.99 - x)
-        } else {
-            80.0 + x
-        })
-    });
+    let hidden = walked(|x| Some(if x < 1.01 { 100.0 * (0.99 - x) } else { 80.0 + x }));
     assert!(near(&hidden, 0.99));
     let touched = walked(|x| Some(1e3 * ((x - 1.37).powi(2) - 1e-5)));
     assert!(near(&touched, 1.37));
@@ -51,9 +41,7 @@ fn crossings_between_jumps_and_touched_zeros_are_found() {
 #[test]
 fn where_the_model_has_no_number_the_scan_says_so() {
     let line = walked(|x| (!(1.0..1.5).contains(&x)).then_some(x - 0.3));
-    let [span] = missing(&line)[..] else {
-        panic!("one span")
-    };
+    let [span] = missing(&line)[..] else { panic!("one span") };
     // To the finest step.
     assert!((span[0].ln() - 1.0).abs() <= FINEST && (span[1].ln() - 1.5).abs() <= FINEST);
     assert!(near(&line, 0.3));

@@ -1,11 +1,7 @@
 use super::*;
 
 fn loose(column: [f64; 2], slope: f64) -> Loose {
-    Loose {
-        column: column.to_vec(),
-        slope,
-        doubt: 1e-6,
-    }
+    Loose { column: column.to_vec(), slope, doubt: 1e-6 }
 }
 
 #[test]

@@ -130,10 +130,7 @@ impl SeriesWriter {
             part,
             open: ManuallyDrop::new(open),
             samples_per_shot: info.samples_per_shot,
-            columns: SeriesColumns {
-                long_names: info.long_names,
-                ..SeriesColumns::default()
-            },
+            columns: SeriesColumns { long_names: info.long_names, ..SeriesColumns::default() },
         })
     }
 
@@ -251,11 +248,7 @@ impl SeriesColumns {
             channel.attach_scale(1, &axis)?;
         }
         for (name, what, values) in [
-            (
-                PROGRAMMED,
-                "programmed speed of the striker",
-                &self.programmed,
-            ),
+            (PROGRAMMED, "programmed speed of the striker", &self.programmed),
             (MEASURED, "speed by the photogate", &self.measured),
         ] {
             column(&root, name, what, "m s-1", values)?.attach_scale(0, &shots)?;
@@ -333,10 +326,7 @@ fn start(part: &Path, info: &SeriesInfo) -> Result<Open, Hdf5Error> {
     let names = info.channels.names().iter();
     let channels: Result<Vec<H5Dataset>, Hdf5Error> =
         names.map(|name| channel(&file, name, info)).collect();
-    Ok(Open {
-        channels: channels?,
-        file,
-    })
+    Ok(Open { channels: channels?, file })
 }
 
 /// An empty channel, with the attributes by which xarray and every reader of CF conventions turn

@@ -5,10 +5,7 @@ fn names() -> Vec<String> {
 }
 
 fn asking(channel: &str) -> ReadOptions {
-    ReadOptions {
-        channels: vec![channel.to_owned()],
-        ..ReadOptions::default()
-    }
+    ReadOptions { channels: vec![channel.to_owned()], ..ReadOptions::default() }
 }
 
 #[test]

@@ -69,12 +69,7 @@ impl Dialect {
         // The first of equals.
         let best = shares.reduce(|best, next| if next.0 > best.0 { next } else { best });
         let (_, delimiter, decimal_comma) = best.filter(|best| best.0 > 0.0)?;
-        let mut dialect = Self {
-            delimiter,
-            decimal_comma,
-            columns: Vec::new(),
-            first_row: 0,
-        };
+        let mut dialect = Self { delimiter, decimal_comma, columns: Vec::new(), first_row: 0 };
         let cells: Vec<_> = rows.iter().map(|row| dialect.fields(row)).collect();
         let widest = cells.iter().map(Vec::len).max().unwrap_or(0);
         let is_number = |column: usize| {
@@ -264,9 +259,7 @@ pub(super) fn last_digit(text: &str, decimal_comma: bool) -> f64 {
         false => '.',
     };
     let (digits, power) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
-    let behind = digits
-        .split_once(sign)
-        .map_or(0, |(_, behind)| behind.len());
+    let behind = digits.split_once(sign).map_or(0, |(_, behind)| behind.len());
     let power: i32 = power.parse().unwrap_or(0);
     10.0_f64.powi(power.saturating_sub(i32::try_from(behind).unwrap_or(i32::MAX)))
 }
@@ -274,9 +267,7 @@ pub(super) fn last_digit(text: &str, decimal_comma: bool) -> f64 {
 /// A number at the beginning of a text and what follows: "1.5 MS/s".
 pub(super) fn leading_number(text: &str, decimal_comma: bool) -> Option<(f64, &str)> {
     let text = text.trim_start_matches([' ', ':', '=', '"', ';', ',', '\t']);
-    let ends = text
-        .char_indices()
-        .map(|(at, letter)| at + letter.len_utf8());
+    let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8());
     let parsed = ends.filter_map(|end| {
         let (head, tail) = text.split_at(end);
         let is_whole = head.ends_with(|letter: char| letter.is_ascii_digit() || letter == '.');

@@ -24,12 +24,8 @@ const RATE_PREFIXES: &[(&[&str], f64)] =
 const VOLTS: &[&str] = &["v", "mv", "µv", "uv", "volt", "volts"];
 
 /// Names of columns of times, and of columns that count.
-const TIMES: &[&str] = &[
-    "t", "time", "times", "zeit", "temps", "tiempo", "x-axis", "x",
-];
-const COUNTS: &[&str] = &[
-    "#", "n", "no", "nr", "index", "sample", "samples", "point", "sequence",
-];
+const TIMES: &[&str] = &["t", "time", "times", "zeit", "temps", "tiempo", "x-axis", "x"];
+const COUNTS: &[&str] = &["#", "n", "no", "nr", "index", "sample", "samples", "point", "sequence"];
 
 /// Names of intervals that begin a header line, or stand over their value, a recorder a line:
 /// Tektronix, Keysight and LeCroy, Rigol, LabVIEW, others.
@@ -170,8 +166,7 @@ fn even_step(column: &[Printed]) -> Option<f64> {
 fn rising(column: &[Printed]) -> Vec<Printed> {
     let mut last_s = f64::NEG_INFINITY;
     let rows = column.iter().copied();
-    rows.take_while(|time| time.s >= std::mem::replace(&mut last_s, time.s))
-        .collect()
+    rows.take_while(|time| time.s >= std::mem::replace(&mut last_s, time.s)).collect()
 }
 
 /// Whether a column holds times of day, which are in seconds whatever its title says.
@@ -197,10 +192,7 @@ fn titles(beginning: &str, dialect: &Dialect, counts: bool) -> (Vec<String>, Vec
     let mut filled = last.iter().filter(|field| !field.is_empty()).peekable();
     if filled.peek().is_some() && filled.all(|field| is_unit(field)) {
         let bare = |field: &String| split_unit(field).1.unwrap_or(field).to_owned();
-        return (
-            lines.pop().unwrap_or_default(),
-            last.iter().map(bare).collect(),
-        );
+        return (lines.pop().unwrap_or_default(), last.iter().map(bare).collect());
     }
     (last, Vec::new())
 }

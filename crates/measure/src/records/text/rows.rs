@@ -107,10 +107,7 @@ impl RowPlan {
         let read = field.and_then(|field| Some((number(field, comma)?, last_digit(field, comma))));
         let trusted = self.options.trusted_rate_hz();
         let (time, last) = read.or(trusted.map(|_| (f64::NAN, 0.0)))?;
-        Some(Printed {
-            s: time * unit_s,
-            unit_s: last * unit_s,
-        })
+        Some(Printed { s: time * unit_s, unit_s: last * unit_s })
     }
 
     /// Whether a line is one of those before the numbers, but for digits: "Segment 2".
@@ -173,11 +170,7 @@ impl Segments {
         let shown: String = line.chars().take(60).collect();
         let detail = format!("line {} is no row of numbers: {shown:?}", self.line);
         match (is_worded(&line), whole) {
-            (true, _) => Line::Words(Footer {
-                shown,
-                detail,
-                lines: 0,
-            }),
+            (true, _) => Line::Words(Footer { shown, detail, lines: 0 }),
             (false, true) => Line::Bad(detail),
             (false, false) => Line::Bad(format!("line {} stops in the middle", self.line)),
         }

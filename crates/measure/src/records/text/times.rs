@@ -64,9 +64,8 @@ pub(super) fn segments(times: &[Printed]) -> Vec<Range<usize>> {
     let starts = (1..times.len()).filter(jumps);
     let mut begin = 0;
     let segments = starts.chain([times.len()]);
-    let segments: Vec<Range<usize>> = segments
-        .map(|end| std::mem::replace(&mut begin, end)..end)
-        .collect();
+    let segments: Vec<Range<usize>> =
+        segments.map(|end| std::mem::replace(&mut begin, end)..end).collect();
     let short = segments.iter().filter(|part| part.len() < SHORTEST).count();
     match segments.len() > MANY && 2 * short > segments.len() {
         true => std::iter::once(0..times.len()).collect(),
@@ -78,10 +77,7 @@ pub(super) fn segments(times: &[Printed]) -> Vec<Range<usize>> {
 pub(super) fn interval(source: &str, times: &[Printed]) -> Result<FromTimes, MeasureError> {
     match times.len() {
         0 => Err(MeasureError::empty(source.to_owned())),
-        1 => Err(MeasureError::truncated(
-            source.to_owned(),
-            "a single sample has no interval",
-        )),
+        1 => Err(MeasureError::truncated(source.to_owned(), "a single sample has no interval")),
         _ => even_interval(times).ok_or_else(|| uneven(source, times)),
     }
 }
@@ -92,9 +88,7 @@ fn uneven(source: &str, times: &[Printed]) -> MeasureError {
     let off_s = |pair: &[Printed]| (pair[1].s - pair[0].s - usual_s).abs();
     let off_s = times.windows(2).map(off_s).enumerate();
     let off_s = off_s.map(|(at, off)| (at, if off.is_nan() { f64::INFINITY } else { off }));
-    let at = off_s
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .map_or(0, |of| of.0);
+    let at = off_s.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |of| of.0);
     // Without the last digits of double precision, which no file had.
     let time_s = times.get(at).map_or(f64::NAN, |time| time.s);
     let time_s: f64 = format!("{time_s:.11e}").parse().unwrap_or(time_s);
@@ -144,13 +138,7 @@ pub(super) fn even_interval(times: &[Printed]) -> Option<FromTimes> {
     let (first, last) = (times.first()?, times.last()?);
     let mean_s = (last.s - first.s) / steps;
     let unit_s = unit_s(times);
-    let range = |least_s, most_s, even_to_s| {
-        Some(FromTimes {
-            least_s,
-            most_s,
-            even_to_s,
-        })
-    };
+    let range = |least_s, most_s, even_to_s| Some(FromTimes { least_s, most_s, even_to_s });
     let off_s = |i: usize, time: &Printed| (time.s - first.s - i as f64 * mean_s).abs();
     let mut numbered = times.iter().enumerate();
     let exact =
@@ -162,10 +150,7 @@ pub(super) fn even_interval(times: &[Printed]) -> Option<FromTimes> {
         return None;
     }
     let slack_s = (last.half_s() + first.half_s()) / steps;
-    let edges = (
-        edge_s(times, mean_s - slack_s),
-        edge_s(times, mean_s + slack_s),
-    );
+    let edges = (edge_s(times, mean_s - slack_s), edge_s(times, mean_s + slack_s));
     if let (Some(least_s), Some(most_s)) = edges {
         return range(least_s, most_s, unit_s);
     }
@@ -267,9 +252,8 @@ impl Returns {
     /// Whether a segment begins with this time: all before rose, and it is no later than the first
     /// of them. Times that go to and fro begin none.
     pub(super) fn begins(&mut self, time_s: f64) -> bool {
-        let back = self
-            .risen_s
-            .is_some_and(|(first_s, last_s)| last_s > first_s && time_s <= first_s);
+        let back =
+            self.risen_s.is_some_and(|(first_s, last_s)| last_s > first_s && time_s <= first_s);
         let risen_s = self.risen_s.filter(|(_, last_s)| time_s >= *last_s);
         self.risen_s = match self.begun && !back {
             false => time_s.is_finite().then_some((time_s, time_s)),

@@ -61,11 +61,7 @@ impl<'a> ChannelSignal<'a> {
         }
         Ok(Self {
             samples,
-            normalisation: Normalisation {
-                sign,
-                baseline,
-                step: 0.0,
-            },
+            normalisation: Normalisation { sign, baseline, step: 0.0 },
             blocks,
             first: cross * BLOCK,
             width: width * BLOCK as f64,
@@ -224,11 +220,7 @@ impl<'a> Smoothed<'a> {
     pub(super) fn of_all(channel: &'a ChannelSignal<'a>, end: usize) -> Self {
         let start = channel.first.saturating_sub((3.0 * channel.width) as usize);
         let highest = channel.largest_block(start as f64, end as f64);
-        Self::new(
-            channel,
-            start..end,
-            highest.map_or(0.0, |(_, height)| height),
-        )
+        Self::new(channel, start..end, highest.map_or(0.0, |(_, height)| height))
     }
 
     /// Maxima from which the signal falls by `drop` on both sides, in order.
@@ -249,10 +241,8 @@ impl<'a> Smoothed<'a> {
         }
         // What only falls from the start on was cut off, not found.
         maxima.retain(|top| *top > 0);
-        let maximum = |top: usize| SmoothedMaximum {
-            at: self.first + top,
-            height: self.values[top],
-        };
+        let maximum =
+            |top: usize| SmoothedMaximum { at: self.first + top, height: self.values[top] };
         maxima.into_iter().map(maximum).collect()
     }
 

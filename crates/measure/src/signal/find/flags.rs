@@ -26,9 +26,7 @@ pub(super) fn flag_digitiser(found: &mut Found, recorded: Channels<'_>, options:
             flags.push(QualityFlag::Saturation(pulse.kind));
             let first = inside.iter().position(|sample| range.clips(*sample));
             let last = inside.iter().rposition(|sample| range.clips(*sample));
-            pulse.clipped = first
-                .zip(last)
-                .map(|(first, last)| (from + first, from + last));
+            pulse.clipped = first.zip(last).map(|(first, last)| (from + first, from + last));
         }
         // Of samples that are not rounded, the least of some hundred is far below their noise.
         let differences = inside.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -40,9 +38,8 @@ pub(super) fn flag_digitiser(found: &mut Found, recorded: Channels<'_>, options:
     }
     let steps = steps.map(|step| if step.is_finite() { step } else { 0.0 });
     (found.sensor.step, found.wall_channel.step) = (steps[0], steps[1]);
-    let coarse = found
-        .pulses()
-        .filter(|pulse| found.normalisation(pulse.kind).is_coarse(pulse.height));
+    let coarse =
+        found.pulses().filter(|pulse| found.normalisation(pulse.kind).is_coarse(pulse.height));
     let coarse: Vec<PulseKind> = coarse.map(|pulse| pulse.kind).collect();
     flags.extend(coarse.iter().copied().map(QualityFlag::CoarseSteps));
     flags.extend(clip_by_shape(found, recorded, &coarse));
@@ -165,10 +162,8 @@ pub(super) fn compare_maxima(found: &mut Found, others: &[Pulse], channels: Chan
         if let Some(own) = found.pulses_mut().find(|own| own.kind == kind) {
             *own = first;
         }
-        let lower = Estimate {
-            value: most.value - next.value,
-            sigma: most.sigma.hypot(next.sigma),
-        };
+        let lower =
+            Estimate { value: most.value - next.value, sigma: most.sigma.hypot(next.sigma) };
         found.competing.push(CompetingMaximum { pulse, lower });
         if lower.value < SIGNIFICANT * lower.sigma || lower.value <= 0.0 {
             found.flag([QualityFlag::AmbiguousMaximum(kind)]);
@@ -181,9 +176,9 @@ pub(super) fn compare_maxima(found: &mut Found, others: &[Pulse], channels: Chan
 fn top_by_fit(found: &Found, pulse: &Pulse, channels: Channels<'_>) -> (f64, Estimate) {
     let normalisation = *found.normalisation(pulse.kind);
     let view = ChannelView::new(channels, pulse.kind, normalisation);
-    let (at, value, sigma) = maximum_by_fit(&view, pulse).map_or(
-        (pulse.at as f64, pulse.height, normalisation.baseline.noise),
-        |picked| (picked.time_s, picked.height, picked.height_sigma),
-    );
+    let (at, value, sigma) = maximum_by_fit(&view, pulse)
+        .map_or((pulse.at as f64, pulse.height, normalisation.baseline.noise), |picked| {
+            (picked.time_s, picked.height, picked.height_sigma)
+        });
     (at, Estimate { value, sigma })
 }

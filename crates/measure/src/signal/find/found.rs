@@ -66,10 +66,7 @@ impl QualityFlag {
     /// or of pulses taken for one another.
     #[must_use]
     pub fn is_grave(&self) -> bool {
-        matches!(
-            self,
-            Self::Saturation(_) | Self::Order | Self::Unidentified | Self::FewSamples(_)
-        )
+        matches!(self, Self::Saturation(_) | Self::Order | Self::Unidentified | Self::FewSamples(_))
     }
 }
 
@@ -170,10 +167,7 @@ impl Pulse {
     pub(crate) fn with_clipped_spread(&self, samples: usize) -> Self {
         let spread =
             |(first, last): (usize, usize)| (first.saturating_sub(samples), last + samples);
-        Self {
-            clipped: self.clipped.map(spread),
-            ..*self
-        }
+        Self { clipped: self.clipped.map(spread), ..*self }
     }
 
     /// Whether a sample is clipped, or next to one that is: recorders round the corner.

@@ -50,9 +50,7 @@ pub(crate) fn conditioned_pulses(
         // Where a clipped pulse has its maximum is chance.
         let clipped = |pulse: &Pulse| found.flags.contains(&QualityFlag::Saturation(pulse.kind));
         let asymmetric = found.pulses().filter(|p| !clipped(p) && p.is_asymmetric());
-        let asymmetric: Vec<_> = asymmetric
-            .map(|p| QualityFlag::Asymmetric(p.kind))
-            .collect();
+        let asymmetric: Vec<_> = asymmetric.map(|p| QualityFlag::Asymmetric(p.kind)).collect();
         found.flag(asymmetric);
     }
     Ok(found)
@@ -205,11 +203,7 @@ fn pulse_flags(pulses: &[Option<Pulse>; 3], views: [&Smoothed<'_>; 3]) -> Vec<Qu
             (cut, QualityFlag::RecordTooShort),
             (pulse.width_samples < FEW, QualityFlag::FewSamples(kind)),
         ];
-        flags.extend(
-            checks
-                .into_iter()
-                .filter_map(|(is_so, flag)| is_so.then_some(flag)),
-        );
+        flags.extend(checks.into_iter().filter_map(|(is_so, flag)| is_so.then_some(flag)));
         flags.extend(overlap.map(|(next, _)| QualityFlag::Overlap(kind, next.kind)));
     }
     flags

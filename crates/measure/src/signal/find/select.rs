@@ -38,11 +38,7 @@ struct Timing {
 
 impl Timing {
     fn new(channel: &ChannelSignal<'_>, options: &FindOptions) -> Self {
-        Self {
-            width: channel.width,
-            beads: options.beads,
-            limits: options.limits,
-        }
+        Self { width: channel.width, beads: options.beads, limits: options.limits }
     }
 
     fn expected(&self) -> Option<f64> {
@@ -92,13 +88,7 @@ impl Timing {
 pub(super) fn largest(maxima: &[SmoothedMaximum], from: f64, to: f64) -> Option<SmoothedMaximum> {
     let inside = |m: &&SmoothedMaximum| (m.at as f64) > from && (m.at as f64) < to;
     let inside = maxima.iter().filter(inside).copied();
-    inside.reduce(|best, next| {
-        if next.height > best.height {
-            next
-        } else {
-            best
-        }
-    })
+    inside.reduce(|best, next| if next.height > best.height { next } else { best })
 }
 
 /// Last sample that matters in a summed channel: three incident times after the wall's pulse.
@@ -128,10 +118,7 @@ pub(super) fn summed(smoothed: &Smoothed<'_>, options: &FindOptions) -> PulseSel
     let (from, to) = timing.wall_window();
     let began = first.at as f64;
     let Some(wall) = largest(maxima, began + from, began + to) else {
-        return PulseSelection {
-            maxima: [Some(first), None, None],
-            ..PulseSelection::default()
-        };
+        return PulseSelection { maxima: [Some(first), None, None], ..PulseSelection::default() };
     };
     let wall = half_way(maxima, first, wall, &timing);
     let reached = wall.at as f64;
@@ -177,21 +164,14 @@ fn identify_two(
             }
             false => return selection,
         };
-        return PulseSelection {
-            maxima,
-            windows: [(0.0, 0.0); 3],
-            ..selection
-        };
+        return PulseSelection { maxima, windows: [(0.0, 0.0); 3], ..selection };
     }
     let noise = channel.normalisation.baseline.broad_noise();
     // Standard error of the height of a Gaussian beside a line fitted over 2.5 widths.
     let least = 2.0 * LEAST_SIGNIFICANCE * noise * (1.6 / timing.width.sqrt());
     let seen = limits.reflected_over_wall_min * second.height > least;
     let shows_all = seen && !ends_early(first.at, second.at, channel.samples.len());
-    PulseSelection {
-        unidentified: may_be_reflected || shows_all,
-        ..selection
-    }
+    PulseSelection { unidentified: may_be_reflected || shows_all, ..selection }
 }
 
 /// Whether a record ends before a reflected pulse could have been missed.
@@ -326,11 +306,7 @@ impl Smoothed<'_> {
 
     /// Height of a Gaussian of this width beside a polynomial, in its standard errors.
     fn significance(&self, maximum: &SmoothedMaximum, width: f64, terms: usize) -> f64 {
-        let ChannelSignal {
-            samples,
-            normalisation,
-            ..
-        } = self.channel;
+        let ChannelSignal { samples, normalisation, .. } = self.channel;
         let reach = (REACH * width) as usize;
         let first = maximum.at.saturating_sub(reach);
         let last = (maximum.at + reach + 1).min(samples.len());
@@ -342,8 +318,6 @@ impl Smoothed<'_> {
             normal.add(&row, normalisation.height(*sample));
         }
         let noise = normalisation.baseline.broad_noise();
-        normal.solve().map_or(0.0, |found| {
-            found.values[0] / (noise * found.inverse[0][0].sqrt())
-        })
+        normal.solve().map_or(0.0, |found| found.values[0] / (noise * found.inverse[0][0].sqrt()))
     }
 }

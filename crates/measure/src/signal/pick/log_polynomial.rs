@@ -145,11 +145,7 @@ impl ShapePrior {
         let mut deviation = powers(widths);
         let even_ones = deviation.iter_mut().skip(SHAPE + 1).step_by(2);
         even_ones.for_each(|one| *one *= even);
-        Self {
-            mean: [0.0; MOST],
-            deviation,
-            together: [0.0; MOST],
-        }
+        Self { mean: [0.0; MOST], deviation, together: [0.0; MOST] }
     }
 
     /// Row k of the inverse root of the covariance: by it, coefficients less their means are
@@ -347,8 +343,7 @@ impl BellData {
             normal.add(row, residual);
             squares += residual * residual;
         };
-        self.residuals(bell)
-            .for_each(|(residual, row)| add(&row, residual));
+        self.residuals(bell).for_each(|(residual, row)| add(&row, residual));
         let terms = self.terms();
         let off: Row = from_fn(|k| bell[k] - self.prior.mean[k]);
         for k in SHAPE..terms {
@@ -413,11 +408,7 @@ impl Slope {
         };
         let [p, q, r, s] = rows.each_ref().map(of);
         // y′ = p y, y″ = (q + p²) y, y‴ = (r + 3 p q + p³) y.
-        let weights = [
-            1.0 + 2.0 * a * p + 3.0 * b * (q + p * p),
-            a + 3.0 * b * p,
-            b,
-        ];
+        let weights = [1.0 + 2.0 * a * p + 3.0 * b * (q + p * p), a + 3.0 * b * p, b];
         Self {
             value: p + a * (q + p * p) + b * (r + 3.0 * p * q + p.powi(3)),
             derivative: weights[0] * q + weights[1] * r + weights[2] * s,

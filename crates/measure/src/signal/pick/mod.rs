@@ -228,19 +228,11 @@ pub(crate) fn pick(
     let competing = |kind| {
         let all = &found.competing;
         let other = all.iter().find(|other| other.pulse.kind == kind)?;
-        Some(CompetingPick {
-            picked: pick(&other.pulse).ok()?,
-            lower: other.lower,
-        })
+        Some(CompetingPick { picked: pick(&other.pulse).ok()?, lower: other.lower })
     };
     let mut competing = PulseKind::ALL.map(competing);
     competing[2] = competing[2].filter(|_| reflected.is_some());
-    Ok(Picks {
-        incident: pick(&incident)?,
-        wall: pick(&wall)?,
-        reflected,
-        competing,
-    })
+    Ok(Picks { incident: pick(&incident)?, wall: pick(&wall)?, reflected, competing })
 }
 
 /// A pulse's maximum by a fit to the samples about it, in samples.
@@ -251,13 +243,7 @@ pub(crate) fn maximum_by_fit(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Pi
 impl Picked {
     /// The same with a time of another method, of no systematic error.
     fn by_fit(self, time_s: f64, sigma_s: f64, misfit: Option<f64>) -> Self {
-        Self {
-            time_s,
-            sigma_s,
-            systematic: Systematic::default(),
-            misfit,
-            ..self
-        }
+        Self { time_s, sigma_s, systematic: Systematic::default(), misfit, ..self }
     }
 
     fn in_seconds(self, interval_s: f64) -> Self {
@@ -284,13 +270,9 @@ impl Method {
                 let expected = "a share of the maximum from 0.02 to 0.95";
                 within("threshold", *fraction, 0.02, 0.95, expected)
             }
-            Self::MatchedShape { width, .. } => within(
-                "width of the fit",
-                *width,
-                0.2,
-                4.0,
-                "a number from 0.2 to 4",
-            ),
+            Self::MatchedShape { width, .. } => {
+                within("width of the fit", *width, 0.2, 4.0, "a number from 0.2 to 4")
+            }
             Self::Maximum | Self::CrossCorrelation => Ok(()),
         }
     }
@@ -342,11 +324,7 @@ impl<'a> Picker<'a> {
             Self::Maximum => Ok(top),
             Self::Onset(fraction) => polynomial::pick_onset_of_clipped(view, pulse, *fraction, top),
             Self::Matched(shape, width) => {
-                let whole = Pulse {
-                    height: top.height,
-                    width_samples: top.width_s,
-                    ..*pulse
-                };
+                let whole = Pulse { height: top.height, width_samples: top.width_s, ..*pulse };
                 shape::pick(view, &whole, shape, *width)
             }
             Self::Correlation(_) => Err(none("top to correlate, clipped as it is,")),

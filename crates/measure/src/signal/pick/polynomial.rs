@@ -64,13 +64,8 @@ impl Top {
         Picked {
             time_s: time + likely,
             // Of a parabola heights differ by a deviation at two deviations of its maximum.
-            sigma_s: by_noise(self.slope_share)
-                .max(0.5 * self.reach * fit.half)
-                .hypot(under),
-            systematic: Systematic {
-                superposition_s: under,
-                shape_s: by_noise(self.open_share),
-            },
+            sigma_s: by_noise(self.slope_share).max(0.5 * self.reach * fit.half).hypot(under),
+            systematic: Systematic { superposition_s: under, shape_s: by_noise(self.open_share) },
             height: self.height,
             height_sigma: noise * self.height_share,
             width_s: pulse.width_samples,

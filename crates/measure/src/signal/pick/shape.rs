@@ -84,9 +84,7 @@ fn points(view: &ChannelView<'_>, pulse: &Pulse, width: f64) -> Vec<(f64, f64)> 
     };
     let points = (first..).zip(heights);
     let points = points.filter(|(sample, _)| !clipped(*sample));
-    points
-        .map(|(sample, height)| (sample as f64, height))
-        .collect()
+    points.map(|(sample, height)| (sample as f64, height)).collect()
 }
 
 /// Normal equations of a step from a model, and the model's sum of squares.

@@ -28,11 +28,7 @@ impl ChannelView<'_> {
     /// Standard deviation, with its sign, of the fall a sample of what may lie under a pulse at its
     /// maximum: a share of the largest fall, all of it for an asymmetric pulse.
     pub(super) fn fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
-        let least = if self.wall.is_some() {
-            DEVIATION
-        } else {
-            BEFORE
-        };
+        let least = if self.wall.is_some() { DEVIATION } else { BEFORE };
         let share = least + (1.0 - least) * pulse.asymmetry();
         share * self.largest_fall_under(pulse, time)
     }

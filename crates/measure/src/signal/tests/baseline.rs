@@ -11,9 +11,7 @@ fn a_median_ignores_what_lies_far_out() {
 #[test]
 fn a_spike_moves_neither_offset_nor_noise() {
     // ±1 by turns about 40: deviation 1 (with n − 1: 1.005), correlation below 1.
-    let mut quiet: Vec<f64> = (0..100)
-        .map(|i| 40.0 + f64::from(i % 2) * 2.0 - 1.0)
-        .collect();
+    let mut quiet: Vec<f64> = (0..100).map(|i| 40.0 + f64::from(i % 2) * 2.0 - 1.0).collect();
     quiet[17] = 5e3;
     let level = baseline(&quiet).unwrap();
     // One of a hundred samples is left out: 1/99 of a deviation.
@@ -24,9 +22,7 @@ fn a_spike_moves_neither_offset_nor_noise() {
 #[test]
 fn noise_below_a_digitiser_step_is_still_seen() {
     // One sample in five is one step up: mean 0.2, variance 0.16.
-    let quiet: Vec<f64> = (0..500)
-        .map(|i| if i % 5 == 0 { 1.0 } else { 0.0 })
-        .collect();
+    let quiet: Vec<f64> = (0..500).map(|i| if i % 5 == 0 { 1.0 } else { 0.0 }).collect();
     let level = baseline(&quiet).unwrap();
     // n − 1 in place of n.
     assert!((level.offset - 0.2).abs() < 1e-12);
@@ -41,10 +37,7 @@ fn a_constant_has_no_noise() {
 
 #[test]
 fn too_little_or_nonsense_is_refused() {
-    assert!(matches!(
-        baseline(&[1.0; 7]),
-        Err(MeasureError::TooShort(..))
-    ));
+    assert!(matches!(baseline(&[1.0; 7]), Err(MeasureError::TooShort(..))));
     let mut bad = [1.0; 20];
     bad[3] = f64::NAN;
     assert!(matches!(baseline(&bad), Err(MeasureError::NotFinite(3, _))));

@@ -4,10 +4,7 @@ use super::*;
 fn probabilities_are_those_of_closed_forms() {
     // Two degrees of freedom: exp(−χ²/2). Both expansions; rounding.
     for x in [0.1, 1.0, 5.0, 40.0] {
-        assert!(
-            (upper_gamma(1.0, x) / (-x).exp() - 1.0).abs() < 1e-13,
-            "{x}"
-        );
+        assert!((upper_gamma(1.0, x) / (-x).exp() - 1.0).abs() < 1e-13, "{x}");
     }
     // One degree: erfc(√(χ²/2)).
     for x in [0.2_f64, 1.0, 3.0, 12.0] {

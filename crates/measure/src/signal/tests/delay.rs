@@ -1,9 +1,7 @@
 use super::*;
 
 fn bump(count: usize, at: f64, width: f64) -> Vec<f64> {
-    (0..count)
-        .map(|i| ((i as f64 - at) / width).cosh().powi(-4))
-        .collect()
+    (0..count).map(|i| ((i as f64 - at) / width).cosh().powi(-4)).collect()
 }
 
 #[test]
@@ -12,10 +10,7 @@ fn delay_of_a_shifted_pulse_is_its_shift() {
         let delay =
             delay_by_cross_correlation(&bump(200, 90.0, 9.0), &bump(220, 90.0 + shift, 9.0), 2e-6);
         // The remainder of the quartic at 9 samples a width is 4e-5 of a sample.
-        assert!(
-            (delay.unwrap() - 2e-6 * shift).abs() < 1e-4 * 2e-6,
-            "{shift}: {delay:?}"
-        );
+        assert!((delay.unwrap() - 2e-6 * shift).abs() < 1e-4 * 2e-6, "{shift}: {delay:?}");
     }
 }
 
@@ -33,8 +28,5 @@ fn silence_and_nonsense_have_no_delay() {
     let pulse = bump(20, 10.0, 2.0);
     assert_eq!(delay_by_cross_correlation(&[], &pulse, 1.0), None);
     assert_eq!(delay_by_cross_correlation(&pulse, &[0.0; 20], 1.0), None);
-    assert_eq!(
-        delay_by_cross_correlation(&pulse, &[f64::NAN; 20], 1.0),
-        None
-    );
+    assert_eq!(delay_by_cross_correlation(&pulse, &[f64::NAN; 20], 1.0), None);
 }

@@ -2,10 +2,7 @@ use super::*;
 
 #[test]
 fn runs_at_either_end_are_found_also_at_the_end() {
-    let range = DigitiserRange {
-        low: -5.0,
-        high: 5.0,
-    };
+    let range = DigitiserRange { low: -5.0, high: 5.0 };
     let low = [0.0, -5.0, -5.0, -5.0, 1.0, 1.0, 1.0, 1.0];
     assert!(range.clips_run(&low, 3));
     assert!(!range.clips_run(&low, 4), "neither end has four");

@@ -25,9 +25,7 @@ pub(super) fn folder(test: &str) -> PathBuf {
 
 /// A file that is kept with the tests.
 pub(super) fn kept(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/records/data")
-        .join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/records/data").join(name)
 }
 
 /// Runs a Python program in a folder and gives what it prints; `None`, with a

@@ -22,12 +22,7 @@ impl Python {
         packages: &'static [&'static str],
         untested: &'static str,
     ) -> Self {
-        Self {
-            environment,
-            packages,
-            untested,
-            interpreter: OnceLock::new(),
-        }
+        Self { environment, packages, untested, interpreter: OnceLock::new() }
     }
 
     /// Runs a Python program in a folder and gives what it prints; `None`, with a
@@ -36,11 +31,7 @@ impl Python {
         let python = self.interpreter.get_or_init(|| self.made()).as_ref()?;
         let script = folder.join("script.py");
         fs::write(&script, program).unwrap();
-        let output = Command::new(python)
-            .arg(&script)
-            .current_dir(folder)
-            .output()
-            .unwrap();
+        let output = Command::new(python).arg(&script).current_dir(folder).output().unwrap();
         let error = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{error}");
         Some(String::from_utf8(output.stdout).unwrap())

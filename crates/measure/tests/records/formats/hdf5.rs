@@ -61,10 +61,7 @@ with h5py.File("text.h5", "w") as file:
     assert_wave(&all(&several, &reported(&["b", "a"]))[2], 1, 2, 1.0);
     let results: Vec<_> = read(&several, &at_1_mhz()).collect();
     let error = results[0].as_ref().unwrap_err().to_string();
-    assert!(
-        error.contains("(a, b, c)") && error.contains("--channel"),
-        "{error}"
-    );
+    assert!(error.contains("(a, b, c)") && error.contains("--channel"), "{error}");
     assert_wave(&all(&folder.join("columns.h5"), &at_1_mhz())[0], 1, 1, 1.0);
     let empty: Vec<_> = read(&folder.join("text.h5"), &open).collect();
     assert!(matches!(&empty[0], Err(MeasureError::Samples(_, why)) if why == "holds no samples"));

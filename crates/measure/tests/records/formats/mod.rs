@@ -10,10 +10,7 @@ use std::path::Path;
 
 /// Files that do not determine their rate.
 pub fn at_1_mhz() -> ReadOptions {
-    ReadOptions {
-        rate_hz: Some(1e6),
-        ..ReadOptions::default()
-    }
+    ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() }
 }
 
 pub fn all(path: &Path, options: &ReadOptions) -> Vec<Record> {
@@ -37,11 +34,6 @@ pub fn assert_wave(record: &Record, channel: usize, shot: usize, scale: f64) {
     assert_eq!(volts.len(), 200, "{}", record.source);
     for (i, volt) in volts.iter().enumerate() {
         // All values are multiples of 1/128: exact in every format.
-        assert_eq!(
-            *volt * scale,
-            wave(shot, i),
-            "{}, sample {i}",
-            record.source
-        );
+        assert_eq!(*volt * scale, wave(shot, i), "{}, sample {i}", record.source);
     }
 }

@@ -84,10 +84,7 @@ fn npz(folder: &Path) {
     assert_wave(&packed[1], 0, 1, 1.0 / 128.0);
     let channels = all(&folder.join("channels.npz"), &open);
     assert_eq!((channels.len(), channels[0].channels.len()), (1, 2));
-    let names = channels[0]
-        .channels
-        .iter()
-        .map(|channel| channel.name.as_str());
+    let names = channels[0].channels.iter().map(|channel| channel.name.as_str());
     assert_eq!(names.collect::<Vec<_>>(), ["bead", "wall"]);
     assert_wave(&channels[0], 1, 1, 1.0);
 }
@@ -99,11 +96,8 @@ fn rows_are_channels_if_told() {
     if python(&folder, &program).is_none() {
         return;
     }
-    let options = ReadOptions {
-        rows: Rows::Channels,
-        channels: vec!["2".to_owned()],
-        ..at_1_mhz()
-    };
+    let options =
+        ReadOptions { rows: Rows::Channels, channels: vec!["2".to_owned()], ..at_1_mhz() };
     let records = all(&folder.join("a.npy"), &options);
     assert_eq!(records.len(), 1);
     assert_wave(&records[0], 0, 1, 1.0);
@@ -124,10 +118,7 @@ with h5py.File("rows.h5", "w") as file:
     if python(&folder, &program).is_none() {
         return;
     }
-    let cut = ReadOptions {
-        parts: Parts::Shots(200),
-        ..at_1_mhz()
-    };
+    let cut = ReadOptions { parts: Parts::Shots(200), ..at_1_mhz() };
     for name in ["rows.npy", "fortran.npy", "rows.h5"] {
         let records = all(&folder.join(name), &cut);
         assert_eq!(records.len(), 4, "{name}");
@@ -136,17 +127,11 @@ with h5py.File("rows.h5", "w") as file:
             assert_wave(record, 0, shot, 1.0);
         }
     }
-    let channels = ReadOptions {
-        rows: Rows::Channels,
-        ..cut.clone()
-    };
+    let channels = ReadOptions { rows: Rows::Channels, ..cut.clone() };
     let records = all(&folder.join("rows.npy"), &channels);
     assert_eq!((records.len(), records[1].channels.len()), (2, 2));
     assert_wave(&records[1], 1, 3, 1.0);
-    let uneven = ReadOptions {
-        parts: Parts::Shots(300),
-        ..cut
-    };
+    let uneven = ReadOptions { parts: Parts::Shots(300), ..cut };
     let results: Vec<_> = read(&folder.join("rows.npy"), &uneven).collect();
     let error = results[1].as_ref().unwrap_err().to_string();
     assert!(error.contains("what cutting left over"), "{error}");

@@ -66,11 +66,7 @@ with open("excel.csv", "w", newline="", encoding="utf-8-sig") as file:
     }
     for (name, channels) in [("spaces.txt", 2), ("comma.csv", 1), ("excel.csv", 2)] {
         let records = all(&folder.join(name), &ReadOptions::default());
-        assert_eq!(
-            (records.len(), records[0].channels.len()),
-            (1, channels),
-            "{name}"
-        );
+        assert_eq!((records.len(), records[0].channels.len()), (1, channels), "{name}");
         // The sum of 199 steps of 1e-6 as the file's digits give it.
         assert!((records[0].interval_s - 1e-6).abs() < 1e-18, "{name}");
         for shot in 0..channels {

@@ -30,15 +30,9 @@ wavfile.write("long.wav", 500000, (long * 32768).astype("int16"))
     }
     let wide = read(&folder.join("f8.wav"), &ReadOptions::default());
     let reported: Vec<String> = wide.map(|record| record.unwrap_err().to_string()).collect();
-    assert!(
-        reported.len() == 1 && reported[0].contains("float32"),
-        "{reported:?}"
-    );
+    assert!(reported.len() == 1 && reported[0].contains("float32"), "{reported:?}");
     assert_wave(&all(&folder.join("u1.wav"), &at_1_mhz())[0], 0, 0, 1.0);
-    let cut = ReadOptions {
-        parts: Parts::Shots(200),
-        ..ReadOptions::default()
-    };
+    let cut = ReadOptions { parts: Parts::Shots(200), ..ReadOptions::default() };
     let records = all(&folder.join("long.wav"), &cut);
     assert_eq!((records.len(), records[2].interval_s), (3, 2e-6));
     assert_wave(&records[2], 0, 2, 1.0);
@@ -68,10 +62,7 @@ numpy.savetxt("long.csv", numpy.array([numpy.arange(600) * 1e-6, long]).T, delim
     if python(&folder, &program).is_none() {
         return;
     }
-    let pieces = ReadOptions {
-        parts: Parts::Pieces(250),
-        ..at_1_mhz()
-    };
+    let pieces = ReadOptions { parts: Parts::Pieces(250), ..at_1_mhz() };
     for (name, expected) in [
         ("long.npy", vec![0, 250, 500]),
         ("long.csv", vec![0, 250, 500]),
@@ -87,25 +78,15 @@ numpy.savetxt("long.csv", numpy.array([numpy.arange(600) * 1e-6, long]).T, delim
         }
         let first: Vec<u64> = records.iter().map(|record| record.first_sample).collect();
         assert_eq!(first, expected, "{name}");
-        let whole: Vec<f64> = records
-            .iter()
-            .take(3)
-            .flat_map(|record| record.channels[0].volts.clone())
-            .collect();
+        let whole: Vec<f64> =
+            records.iter().take(3).flat_map(|record| record.channels[0].volts.clone()).collect();
         let expected: Vec<f64> = (0..600).map(|i| wave(i / 200, i % 200)).collect();
         assert_eq!(whole, expected, "{name}");
-        assert!(
-            records
-                .iter()
-                .all(|record| record.interval_s == records[0].interval_s)
-        );
+        assert!(records.iter().all(|record| record.interval_s == records[0].interval_s));
     }
     for name in ["rows.npz", "rows.h5"] {
         let records = all(&folder.join(name), &pieces);
-        let speeds: Vec<_> = records
-            .iter()
-            .filter_map(|record| record.speed_m_s)
-            .collect();
+        let speeds: Vec<_> = records.iter().filter_map(|record| record.speed_m_s).collect();
         assert_eq!(speeds, [0.1, 0.1, 0.1, 0.2, 0.2, 0.2], "{name}");
     }
     for name in ["cube.npy", "cube.npz"] {
@@ -117,11 +98,7 @@ numpy.savetxt("long.csv", numpy.array([numpy.arange(600) * 1e-6, long]).T, delim
             let own = (record.first_sample, volt(0) * sign);
             let start = 250 * (at % 3);
             let expected = wave(start / 200, start % 200);
-            assert_eq!(
-                (own, volt(1)),
-                ((start as u64, expected), expected),
-                "{name}"
-            );
+            assert_eq!((own, volt(1)), ((start as u64, expected), expected), "{name}");
         }
     }
 }

@@ -11,11 +11,8 @@ const STEP_S: f64 = 1.9e-3 / 3000.0;
 
 impl Dry {
     /// Maxima of the passing, the wall's and the reflected pulse in s.
-    pub const MAXIMA_S: [f64; 3] = [
-        0.000_163_206_845_155_876_9,
-        0.000_925_110_869_017_615,
-        0.001_722_994_635_316_393_3,
-    ];
+    pub const MAXIMA_S: [f64; 3] =
+        [0.000_163_206_845_155_876_9, 0.000_925_110_869_017_615, 0.001_722_994_635_316_393_3];
 
     pub fn load() -> Self {
         let text = include_str!("../data/dry_shot.csv");
@@ -50,9 +47,7 @@ fn lagrange(rows: &[f64], at: f64) -> f64 {
     let u = at - first;
     let weight = |k: usize| -> f64 {
         let others = (0..6).filter(|j| *j != k);
-        others
-            .map(|j| (u - j as f64) / (k as f64 - j as f64))
-            .product()
+        others.map(|j| (u - j as f64) / (k as f64 - j as f64)).product()
     };
     six.map_or(0.0, |six| (0..6).map(|k| weight(k) * six[k]).sum())
 }

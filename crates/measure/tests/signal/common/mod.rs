@@ -75,10 +75,7 @@ impl Scene {
 }
 
 pub fn channels(pair: &(Vec<f64>, Vec<f64>)) -> Channels<'_> {
-    Channels::Separate {
-        sensor: &pair.0,
-        wall: &pair.1,
-    }
+    Channels::Separate { sensor: &pair.0, wall: &pair.1 }
 }
 
 /// A standard normal number, by Box and Muller.

@@ -20,11 +20,7 @@ pub struct Source {
 
 pub fn bells() -> Source {
     let scene = Scene::default();
-    let pulses = [
-        (0.0, 1.0, 46e-6),
-        (760e-6, 1.6, 40e-6),
-        (1560e-6, 0.47, 52e-6),
-    ];
+    let pulses = [(0.0, 1.0, 46e-6), (760e-6, 1.6, 40e-6), (1560e-6, 0.47, 52e-6)];
     Source {
         name: "Bells, cos⁶, unlike in width (46, 40 and 52 µs)",
         signal: Box::new(move |t| {
@@ -53,13 +49,7 @@ pub fn methods() -> [(&'static str, Method); 4] {
         ("local", Method::default()),
         ("onset", Method::Onset { fraction: 0.5 }),
         ("correlation", Method::CrossCorrelation),
-        (
-            "shape",
-            Method::MatchedShape {
-                shape: Shape::cos_power(6.0),
-                width: 2.0,
-            },
-        ),
+        ("shape", Method::MatchedShape { shape: Shape::cos_power(6.0), width: 2.0 }),
     ]
 }
 

@@ -10,9 +10,7 @@ use hertzchain_measure::signal::PowerLaw;
 /// case and branch; in part if it is at least the weaker one.
 pub(super) fn r_squared(claim: &Claim, evidence: &Evidence) -> Finding {
     let finding = r_squared_above(claim.threshold, claim, evidence);
-    let weaker = claim
-        .partly
-        .map(|least| r_squared_above(least, claim, evidence));
+    let weaker = claim.partly.map(|least| r_squared_above(least, claim, evidence));
     finding.or_in_part(weaker.as_ref())
 }
 
@@ -52,15 +50,9 @@ pub(super) fn residuals(claim: &Claim, evidence: &Evidence) -> Finding {
         let fit = curve.weighted_power_law(branch).ok()?;
         let errors = curve.standard_errors_s(branch);
         let tofs = curve.tofs_s(branch);
-        let relative: Vec<f64> = errors
-            .iter()
-            .zip(&tofs)
-            .map(|(error, tof)| error / tof)
-            .collect();
+        let relative: Vec<f64> = errors.iter().zip(&tofs).map(|(error, tof)| error / tof).collect();
         let scaled = fit.residuals.iter().zip(&relative);
-        let value = scaled
-            .map(|(r, error)| (r.exp_m1() / error).abs())
-            .fold(0.0, f64::max);
+        let value = scaled.map(|(r, error)| (r.exp_m1() / error).abs()).fold(0.0, f64::max);
         let finest = relative.iter().copied().fold(f64::INFINITY, f64::min);
         let slopes = curve.slope_accuracies(branch).into_iter();
         let unsure = slopes.fold(0.0, f64::max);
@@ -71,11 +63,7 @@ pub(super) fn residuals(claim: &Claim, evidence: &Evidence) -> Finding {
 
 /// Relative accuracy of a curve's ToFs.
 fn accuracy(curve: &Curve) -> f64 {
-    curve
-        .points
-        .iter()
-        .map(|p| p.accuracy_reached)
-        .fold(0.0, f64::max)
+    curve.points.iter().map(|p| p.accuracy_reached).fold(0.0, f64::max)
 }
 
 /// Evaluates a fit: the value, its margin and their accuracy.
@@ -155,11 +143,7 @@ impl RatioPair {
         let pairs = a.iter().filter_map(|r| Some((*r, partner(r)?)));
         let (one, other): (Vec<TofRatio>, Vec<TofRatio>) = pairs.unzip();
         let speeds: Vec<f64> = one.iter().map(|r| r.speed_m_s.ln()).collect();
-        (one.len() > 2).then(|| Self {
-            one,
-            other,
-            weights: weights(&speeds),
-        })
+        (one.len() > 2).then(|| Self { one, other, weights: weights(&speeds) })
     }
 
     /// Pearson's correlation of the ratios; not a number where one is constant.
@@ -239,10 +223,7 @@ pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
     let [one, similar, other] = &claim.cases[..] else {
         return missing();
     };
-    let correlations = (
-        correlation(evidence, one, similar),
-        correlation(evidence, one, other),
-    );
+    let correlations = (correlation(evidence, one, similar), correlation(evidence, one, other));
     let viscosity = |case: &str| Some(evidence.oil(case)?.dynamic_viscosity_pa_s().ln());
     let viscosities = (viscosity(one), viscosity(similar), viscosity(other));
     let ((Some(near), Some(far)), (Some(a), Some(b), Some(c))) = (correlations, viscosities) else {
@@ -273,25 +254,20 @@ pub(super) fn viscosity_does_not_order_ratios(claim: &Claim, evidence: &Evidence
         }
     }
     oils.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let speeds = oils
-        .first()
-        .map_or(Vec::new(), |(_, ratios)| ratios.clone());
+    let speeds = oils.first().map_or(Vec::new(), |(_, ratios)| ratios.clone());
     let mut comparisons = Comparisons::default();
     for (i, first) in speeds.iter().enumerate() {
         let row: Vec<&TofRatio> = oils.iter().filter_map(|(_, r)| r.get(i)).collect();
-        let steps: Vec<f64> = row
-            .windows(2)
-            .filter_map(|w| Some(w.last()?.incident - w.first()?.incident))
-            .collect();
+        let steps: Vec<f64> =
+            row.windows(2).filter_map(|w| Some(w.last()?.incident - w.first()?.incident)).collect();
         let unsure = row.iter().map(|r| r.accuracy());
         // Out of order by as much as the smaller of the largest rise and fall.
         let rise = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let fall = -steps.iter().copied().fold(f64::INFINITY, f64::min);
         let value = rise.min(fall);
         let accuracy = 2.0 * unsure.fold(0.0, f64::max);
-        comparisons.add(value - claim.threshold, value, accuracy, || {
-            format!("{} m/s", first.speed_m_s)
-        });
+        comparisons
+            .add(value - claim.threshold, value, accuracy, || format!("{} m/s", first.speed_m_s));
     }
     comparisons.finding()
 }

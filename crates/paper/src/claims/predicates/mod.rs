@@ -33,10 +33,7 @@ static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("ratios-differ", curves::ratios_differ),
     ("trends-alike", curves::same_trends),
     ("trend-against-viscosity", curves::against_viscosity),
-    (
-        "viscosity-orders-ratios",
-        curves::viscosity_does_not_order_ratios,
-    ),
+    ("viscosity-orders-ratios", curves::viscosity_does_not_order_ratios),
     ("attenuates-more", attenuates_more),
     ("dynamic-viscosity", dynamic_viscosity),
     ("viscosity-ratio", viscosity_ratio),
@@ -85,10 +82,7 @@ fn branches(claim: &Claim) -> Vec<Branch> {
 /// The shots of a curve at the speeds of a claim.
 fn within<'a>(claim: &Claim, curve: &'a Curve) -> impl Iterator<Item = &'a Point> {
     let speeds = claim.from_m_s..=claim.to_m_s;
-    curve
-        .points
-        .iter()
-        .filter(move |p| speeds.contains(&p.speed_m_s))
+    curve.points.iter().filter(move |p| speeds.contains(&p.speed_m_s))
 }
 
 /// Compares every shot of a claim's cases at its speeds.
@@ -120,10 +114,7 @@ fn place(curve: &Curve, p: &Point) -> String {
 fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
     each_point(claim, evidence, |comparisons, curve, p| {
         let [incident, wall, reflected] = p.widths_s;
-        let ways = [
-            (p.tof_incident_s, incident + wall),
-            (p.tof_reflected_s, wall + reflected),
-        ];
+        let ways = [(p.tof_incident_s, incident + wall), (p.tof_reflected_s, wall + reflected)];
         for (tof, widths) in ways {
             let value = tof / (0.5 * widths);
             let accuracy = value.abs() * (p.accuracy_reached + p.width_accuracy);
@@ -178,10 +169,7 @@ fn closing_gaps_shortens_return(claim: &Claim, evidence: &Evidence) -> Finding {
     let full = above(claim.threshold);
     let weaker = above(claim.partly.unwrap_or(claim.threshold));
     let finding = full.or_in_part(Some(&weaker));
-    Finding {
-        detail: format!("{}; largest share {most:.4}", finding.detail),
-        ..finding
-    }
+    Finding { detail: format!("{}; largest share {most:.4}", finding.detail), ..finding }
 }
 
 /// Reflected less incident ToF of a shot with its gaps, with closed ones, and without
@@ -258,10 +246,7 @@ fn attenuates_more(claim: &Claim, evidence: &Evidence) -> Finding {
     };
     let left = |p: &Point| {
         let [wall, reflected] = [p.wall_peak_n, p.returning_peak_n];
-        [
-            ("wall", wall / p.sensor_peak_n),
-            ("return", reflected / p.sensor_peak_n),
-        ]
+        [("wall", wall / p.sensor_peak_n), ("return", reflected / p.sensor_peak_n)]
     };
     each_point(claim, evidence, |comparisons, curve, p| {
         let Some(d) = dry.at(p.speed_m_s) else {
@@ -281,10 +266,7 @@ fn attenuates_more(claim: &Claim, evidence: &Evidence) -> Finding {
 fn tof_falls(claim: &Claim, evidence: &Evidence) -> Finding {
     let quantities = branches(claim).into_iter().map(|branch| {
         let log = move |p: &Point| (-p.tof_s(branch).ln(), p.accuracy_reached);
-        (
-            branch.name(),
-            Box::new(log) as Box<dyn Fn(&Point) -> (f64, f64)>,
-        )
+        (branch.name(), Box::new(log) as Box<dyn Fn(&Point) -> (f64, f64)>)
     });
     rises(claim, evidence, &quantities.collect::<Vec<_>>())
 }
@@ -443,8 +425,5 @@ fn of_constants(value: f64, margin: f64, expected: Option<f64>) -> Finding {
     const OPERATIONS: f64 = 10.0;
     let accuracy = OPERATIONS * f64::EPSILON * value.abs();
     let detail = "from the printed constants alone".to_owned();
-    Finding {
-        expected,
-        ..Finding::of_one(margin, value, accuracy, detail)
-    }
+    Finding { expected, ..Finding::of_one(margin, value, accuracy, detail) }
 }

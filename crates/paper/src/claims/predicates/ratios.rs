@@ -26,9 +26,8 @@ fn side(claim: &Claim, evidence: &Evidence, sign: f64) -> Finding {
         for r in ratios.iter().filter(inside) {
             let margin = sign * (r.incident - claim.threshold);
             let accuracy = r.accuracy();
-            comparisons.add(margin, r.incident, accuracy, || {
-                format!("{case} at {} m/s", r.speed_m_s)
-            });
+            comparisons
+                .add(margin, r.incident, accuracy, || format!("{case} at {} m/s", r.speed_m_s));
         }
     }
     comparisons.finding()
@@ -62,11 +61,7 @@ fn rises_along(claim: &Claim, evidence: &Evidence, axis: SpeedAxis) -> Finding {
         steps.extend(ratios.windows(2).filter_map(distance_from_flat));
         let at: Vec<Placed> = ratios
             .iter()
-            .map(|r| Placed {
-                at: axis(r.speed_m_s),
-                ratio: r.incident,
-                unsure: r.accuracy(),
-            })
+            .map(|r| Placed { at: axis(r.speed_m_s), ratio: r.incident, unsure: r.accuracy() })
             .collect();
         let (rising, accuracy) = rising(&at);
         let (value, accuracy) = (rising / all, accuracy / all);
@@ -75,10 +70,7 @@ fn rises_along(claim: &Claim, evidence: &Evidence, axis: SpeedAxis) -> Finding {
     }
     let in_accuracies = |step: &Distance| step.margin / step.accuracy;
     let nearest = |a: &Distance, b: &Distance| in_accuracies(a).total_cmp(&in_accuracies(b));
-    Finding {
-        nearest_change: steps.into_iter().min_by(nearest),
-        ..comparisons.finding()
-    }
+    Finding { nearest_change: steps.into_iter().min_by(nearest), ..comparisons.finding() }
 }
 
 /// How far the step between two ratios is from 0.
@@ -146,10 +138,7 @@ fn turn_accuracy(three: [&Placed; 3], at_exact: f64) -> f64 {
     let moved = |i: usize| {
         let [before, at, after] = std::array::from_fn(|j| {
             let off = if i == j { three[i].unsure } else { 0.0 };
-            Placed {
-                ratio: three[j].ratio + off,
-                ..*three[j]
-            }
+            Placed { ratio: three[j].ratio + off, ..*three[j] }
         });
         let anywhere = after.at - before.at;
         turn(&before, &at, &after).map_or(anywhere, |turn| (turn - at_exact).abs())
@@ -198,9 +187,8 @@ pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> Finding {
             }
             highest = r.incident.max(highest);
         }
-        comparisons.add(fall - claim.threshold, fall, 2.0 * accuracy, || {
-            format!("{case} at {at} m/s")
-        });
+        comparisons
+            .add(fall - claim.threshold, fall, 2.0 * accuracy, || format!("{case} at {at} m/s"));
     }
     comparisons.finding()
 }
@@ -242,9 +230,8 @@ fn both_sides<'a>(
     place: impl Fn() -> String,
 ) -> (f64, String) {
     let ends = (f64::INFINITY, f64::NEG_INFINITY);
-    let (low, high) = ratios.fold(ends, |(low, high), r| {
-        (low.min(r.incident), high.max(r.incident))
-    });
+    let (low, high) =
+        ratios.fold(ends, |(low, high), r| (low.min(r.incident), high.max(r.incident)));
     ((1.0 - low).min(high - 1.0), place())
 }
 
@@ -317,10 +304,7 @@ fn extreme_count(ratios: &[TofRatio], pick: fn(f64, f64) -> f64) -> f64 {
     let mut all = ratios.iter().map(sides);
     let first = all.next().unwrap_or_default();
     let (below, above) = all.fold(first, |(was_below, was_above), (below, above)| {
-        (
-            below + pick(was_below, was_above + DOWNWARD),
-            above + pick(was_above, was_below + UPWARD),
-        )
+        (below + pick(was_below, was_above + DOWNWARD), above + pick(was_above, was_below + UPWARD))
     });
     pick(below, above)
 }
@@ -329,10 +313,7 @@ fn extreme_count(ratios: &[TofRatio], pick: fn(f64, f64) -> f64) -> f64 {
 /// side matters, for then the count is that of the exact ratios.
 fn count_accuracy(ratios: &[TofRatio]) -> f64 {
     let value = count(ratios);
-    let (least, most) = (
-        extreme_count(ratios, f64::min),
-        extreme_count(ratios, f64::max),
-    );
+    let (least, most) = (extreme_count(ratios, f64::min), extreme_count(ratios, f64::max));
     (value - least).max(most - value)
 }
 
@@ -369,9 +350,7 @@ pub(super) fn crosses_once_upward(claim: &Claim, evidence: &Evidence) -> Finding
 fn passages(ratios: &[TofRatio], nearest: &TofRatio) -> String {
     let (up, down) = crossings(ratios);
     let end = |r: Option<&TofRatio>| {
-        r.map_or(String::new(), |r| {
-            format!("{:.5} at {} m/s", r.incident, r.speed_m_s)
-        })
+        r.map_or(String::new(), |r| format!("{:.5} at {} m/s", r.incident, r.speed_m_s))
     };
     format!(
         "{} upward and {} downward; from {} to {}; the ratio nearest to 1 is off by {:.1e} ± {:.0e}, at {} m/s",
@@ -408,11 +387,7 @@ pub(super) fn crosses_at_speed(claim: &Claim, evidence: &Evidence) -> Finding {
 /// The answer without a passage, which a ratio of 1 within its accuracy may hide.
 fn nowhere(expected: f64, open: bool) -> Finding {
     Finding {
-        verdict: if open {
-            Verdict::NotDecidable
-        } else {
-            Verdict::Fails
-        },
+        verdict: if open { Verdict::NotDecidable } else { Verdict::Fails },
         leaning: Verdict::Fails,
         expected: Some(expected),
         ..Finding::without_numbers("no upward passage of 1")

@@ -22,11 +22,7 @@ fn a_claim_holds_in_part_when_at_least_half_of_its_comparisons_are_met() {
         (0, 31, Verdict::Fails),
         (0, 0, Verdict::NotDecidable),
     ] {
-        assert_eq!(
-            counts(yes, no, 0).finding().verdict,
-            verdict,
-            "{yes} of {yes} + {no}"
-        );
+        assert_eq!(counts(yes, no, 0).finding().verdict, verdict, "{yes} of {yes} + {no}");
     }
 }
 

@@ -2,11 +2,7 @@ use super::*;
 use crate::claims::claims;
 
 fn row(reading: Reading, verdict: Verdict, claims: usize) -> Row {
-    Row {
-        reading,
-        verdicts: vec![verdict; claims],
-        values: vec![0.0; claims],
-    }
+    Row { reading, verdicts: vec![verdict; claims], values: vec![0.0; claims] }
 }
 
 /// A scan of two readings, in a product of one switch, with no room for others.
@@ -46,10 +42,7 @@ fn the_closest_reading_is_scored_without_what_rounding_leaves_open_too() {
     let scan = made_up(Vec::new());
     let (page, all) = (scan_markdown(&scan), scan.claims.len());
     // The default reading meets nothing, the closest everything but two.
-    let listed = format!(
-        "(‡ below, 2 claims; † in the default reading): {} against 0.",
-        all - 2
-    );
+    let listed = format!("(‡ below, 2 claims; † in the default reading): {} against 0.", all - 2);
     assert!(page.contains(&listed), "{page}");
     assert_eq!(page.matches("| ‡ holds |").count(), 2);
 }

@@ -27,10 +27,7 @@ fn peaks(difference: f64, accuracy: f64) -> Evidence {
         loosened_accuracy_m: accuracy,
     };
     Evidence {
-        curves: vec![Curve {
-            case: "dry".to_owned(),
-            points: vec![point],
-        }],
+        curves: vec![Curve { case: "dry".to_owned(), points: vec![point] }],
         digitised: vec![Digitised {
             what: Measured::SensorOverWall,
             case: "dry".to_owned(),
@@ -45,9 +42,7 @@ fn peaks(difference: f64, accuracy: f64) -> Evidence {
 #[test]
 fn shots_are_as_accurate_as_it_takes_to_tell_the_side_and_no_more() {
     let evaluators: Vec<Evaluator> = claims().unwrap();
-    let overlap = evaluators
-        .into_iter()
-        .filter(|j| j.claim.id == "peaks-overlap");
+    let overlap = evaluators.into_iter().filter(|j| j.claim.id == "peaks-overlap");
     let overlap: Vec<Evaluator> = overlap.collect();
     // Two standard errors are allowed.
     for (difference, expected) in [(1.0, 1), (1.999, 2), (1.999_999_999, 3)] {

@@ -12,10 +12,7 @@ fn a_shot_that_goes_on_unchanged_has_its_own_way_back() {
         let back_s = passage.tof_reflected_s().unwrap();
         let again_s = reflected_s(&plan, &passage, |_, _| {}).unwrap().unwrap();
         // Both are right to 1e-8; steps begin anew at the wall's peak.
-        assert!(
-            (again_s / back_s - 1.0).abs() < 2e-8,
-            "{speed_m_s}: {again_s:e} {back_s:e}"
-        );
+        assert!((again_s / back_s - 1.0).abs() < 2e-8, "{speed_m_s}: {again_s:e} {back_s:e}");
     }
 }
 
@@ -30,9 +27,7 @@ fn closed_gaps_just_touch_and_overlaps_and_velocities_stay() {
     close_gaps(&system, &mut closed);
     assert_eq!(open.velocity_m_s, closed.velocity_m_s);
     let contacts = 0..system.contacts();
-    let gaps = contacts
-        .clone()
-        .filter(|&c| open.overlap_m(&system, c) < -1e-9);
+    let gaps = contacts.clone().filter(|&c| open.overlap_m(&system, c) < -1e-9);
     // Behind a wave with losses only the first contacts are open.
     assert!(gaps.count() >= 5, "the wave leaves gaps behind");
     for contact in contacts {

@@ -5,11 +5,7 @@ use hertzchain_chain::theory::solitary::{SolitaryShape, SolitaryWave};
 use hertzchain_experiment::Experiment;
 
 fn row(exponent: f64, masses_kg: [f64; 2]) -> Row {
-    Row {
-        exponent,
-        stiffness: 1.0,
-        masses_kg,
-    }
+    Row { exponent, stiffness: 1.0, masses_kg }
 }
 
 #[test]
@@ -42,24 +38,17 @@ fn computed(light: f64) -> (f64, f64) {
     );
     let dimer = Experiment::from_text("dimer.toml", &text).unwrap();
     let (plan, _) = Plan::from_experiment(&dimer, None).unwrap();
-    let plan = Plan {
-        duration_s: Some(150.0),
-        ..plan.with_accuracy(1e-6)
-    };
+    let plan = Plan { duration_s: Some(150.0), ..plan.with_accuracy(1e-6) };
     let contacts = [60, 61, 100, 101].map(Sensor::Contact).to_vec();
-    let trace = shoot(&plan.watching(contacts, Some(0.01)))
-        .unwrap()
-        .trace
-        .unwrap();
+    let trace = shoot(&plan.watching(contacts, Some(0.01))).unwrap().trace.unwrap();
     let peak = |column: &Vec<f64>| {
         let samples = column.iter().zip(&trace.time_s);
-        samples.fold((0.0, 0.0), |best: (f64, f64), (force, time)| {
-            if *force > best.0 {
-                (*force, *time)
-            } else {
-                best
-            }
-        })
+        samples.fold(
+            (0.0, 0.0),
+            |best: (f64, f64), (force, time)| {
+                if *force > best.0 { (*force, *time) } else { best }
+            },
+        )
     };
     let peaks: Vec<(f64, f64)> = trace.columns.iter().map(peak).collect();
     let force = peaks.iter().map(|(force, _)| force).sum::<f64>() / 4.0;
@@ -74,9 +63,6 @@ fn pulses_in_dimers_have_the_homogenised_speed() {
         let theory = row(1.5, [1.0, light]).speed_beads_s(force);
         // What is left out is of fourth order in the gradient; for equal beads
         // the same theory is 0.8 % fast.
-        assert!(
-            (theory / speed - 1.0).abs() < 0.015,
-            "{light}: {theory} for {speed}"
-        );
+        assert!((theory / speed - 1.0).abs() < 0.015, "{light}: {theory} for {speed}");
     }
 }

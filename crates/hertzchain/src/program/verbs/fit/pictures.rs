@@ -38,11 +38,7 @@ fn scale(of: Observable) -> f64 {
 
 fn curves(fit_result: &FitResult, shown: &[Observable]) -> Chart {
     let times = shown.iter().any(|of| of.is_time());
-    let label = if times {
-        "Time of flight (µs)"
-    } else {
-        "Ratio of peaks"
-    };
+    let label = if times { "Time of flight (µs)" } else { "Ratio of peaks" };
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
     let chart = if times { chart.y_log() } else { chart };
     let chart = chart.title(fit_result.problem.model().experiment().title());
@@ -56,19 +52,13 @@ fn curves(fit_result: &FitResult, shown: &[Observable]) -> Chart {
 /// Measured points, the fitted line and its 95 % band.
 fn with_curve(fit_result: &FitResult, chart: Chart, of: Observable, line: &str) -> Chart {
     let rows = fit_result.problem.data().rows.iter().enumerate();
-    let rows: Vec<_> = rows
-        .filter_map(|(at, row)| Some((at, row, row.value(of)?)))
-        .collect();
+    let rows: Vec<_> = rows.filter_map(|(at, row)| Some((at, row, row.value(of)?))).collect();
     let unit = scale(of);
     let column =
         |value: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows.len()).map(value).collect() };
     let speeds = column(&|i| rows[i].1.speed_m_s.value);
     let predicted = column(&|i| {
-        let of_row = fit_result
-            .curve
-            .predicted
-            .get(rows[i].0)
-            .and_then(|row| row[of as usize]);
+        let of_row = fit_result.curve.predicted.get(rows[i].0).and_then(|row| row[of as usize]);
         unit * of_row.unwrap_or(f64::NAN)
     });
     let spread = column(&|i| unit * BAND * fit_result.curve.sd[rows[i].0][of as usize]);
@@ -79,12 +69,7 @@ fn with_curve(fit_result: &FitResult, chart: Chart, of: Observable, line: &str) 
         .x_error(&column(&|i| rows[i].1.speed_m_s.sigma));
     chart
         .with(Series::band("", &speeds, &edge(-1.0), &edge(1.0)).colour(colour))
-        .with(
-            Series::line(line, &speeds, &predicted)
-                .colour(colour)
-                .dash(Dash::Solid)
-                .width(0.7),
-        )
+        .with(Series::line(line, &speeds, &predicted).colour(colour).dash(Dash::Solid).width(0.7))
         .with(points.colour(colour).marker(marker))
 }
 
@@ -94,46 +79,37 @@ fn residuals(fit_result: &FitResult) -> Chart {
     let data = fit_result.problem.data();
     let measured = fit_result.problem.measured();
     let label = "Residual (standard errors)";
-    let chart = Chart::new("Speed of the striker (m/s)", label)
-        .x_log()
-        .h_line(0.0, "");
+    let chart = Chart::new("Speed of the striker (m/s)", label).x_log().h_line(0.0, "");
     let residuals = measured.into_iter().zip(&fit_result.inferred.fit.residuals);
     let spreads = spreads(fit_result);
     let all: Vec<_> = residuals.zip(&spreads).collect();
-    let sizes = all
-        .iter()
-        .map(|((_, residual), sd)| residual.abs().max(BAND * **sd));
+    let sizes = all.iter().map(|((_, residual), sd)| residual.abs().max(BAND * **sd));
     let reach = sizes.filter(|size| size.is_finite()).fold(1.0, f64::max);
     // Free paper above all points, or one may look like part of the legend.
     let chart = chart.y_range(-1.1 * reach, LEGEND_ABOVE * reach);
-    Observable::ALL
-        .into_iter()
-        .filter(|of| data.has(*of))
-        .fold(chart, |chart, of| {
-            let own = || all.iter().filter(|(((_, other), _), _)| *other == of);
-            let (speeds, values): (Vec<f64>, Vec<f64>) = own()
-                .map(|(((row, _), residual), _)| (data.rows[*row].speed_m_s.value, **residual))
-                .unzip();
-            let edge = |sign: f64| own().map(|(_, sd)| sign * BAND * **sd).collect::<Vec<_>>();
-            let (colour, marker) = LOOKS[of as usize];
-            let name = format!("95 % of the fit, {}", short(of));
-            let first = Observable::ALL.iter().find(|of| data.has(**of)) == Some(&of);
-            // A second band would hide the first.
-            let chart = match first {
-                true => {
-                    let band = Series::band(&name, &speeds, &edge(-1.0), &edge(1.0));
-                    chart.with(band.colour(colour))
-                }
-                false => [(-1.0, ""), (1.0, &name)]
-                    .iter()
-                    .fold(chart, |chart, (sign, name)| {
-                        let line = Series::line(name, &speeds, &edge(*sign));
-                        chart.with(line.colour(colour).dash(Dash::Dashed).width(0.7))
-                    }),
-            };
-            let points = Series::points("", &speeds, &values);
-            chart.with(points.colour(colour).marker(marker))
-        })
+    Observable::ALL.into_iter().filter(|of| data.has(*of)).fold(chart, |chart, of| {
+        let own = || all.iter().filter(|(((_, other), _), _)| *other == of);
+        let (speeds, values): (Vec<f64>, Vec<f64>) = own()
+            .map(|(((row, _), residual), _)| (data.rows[*row].speed_m_s.value, **residual))
+            .unzip();
+        let edge = |sign: f64| own().map(|(_, sd)| sign * BAND * **sd).collect::<Vec<_>>();
+        let (colour, marker) = LOOKS[of as usize];
+        let name = format!("95 % of the fit, {}", short(of));
+        let first = Observable::ALL.iter().find(|of| data.has(**of)) == Some(&of);
+        // A second band would hide the first.
+        let chart = match first {
+            true => {
+                let band = Series::band(&name, &speeds, &edge(-1.0), &edge(1.0));
+                chart.with(band.colour(colour))
+            }
+            false => [(-1.0, ""), (1.0, &name)].iter().fold(chart, |chart, (sign, name)| {
+                let line = Series::line(name, &speeds, &edge(*sign));
+                chart.with(line.colour(colour).dash(Dash::Dashed).width(0.7))
+            }),
+        };
+        let points = Series::points("", &speeds, &values);
+        chart.with(points.colour(colour).marker(marker))
+    })
 }
 
 /// Top of the residuals' axis over the largest of them: room for two lines of a legend.
@@ -141,9 +117,7 @@ const LEGEND_ABOVE: f64 = 1.8;
 
 /// Standard errors of the fitted curve in those of each residual.
 fn spreads(fit_result: &FitResult) -> Vec<f64> {
-    let Inferred {
-        fit, covariance, ..
-    } = &fit_result.inferred;
+    let Inferred { fit, covariance, .. } = &fit_result.inferred;
     let slopes = |at: usize| {
         let columns = fit.jacobian.columns.iter();
         columns.map(move |column| column.get(at).copied().unwrap_or(f64::NAN))

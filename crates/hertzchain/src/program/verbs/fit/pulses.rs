@@ -41,10 +41,8 @@ fn text(fit_result: &Pulsed, arguments: &Arguments) -> String {
         report::values(&fit_result.inferred),
         lines(inference::references(fit_result.problem.model()))
     );
-    text += &format!(
-        "The model's signals pass the amplifier's filters: {}\n",
-        fit_result.filters()
-    );
+    text +=
+        &format!("The model's signals pass the amplifier's filters: {}\n", fit_result.filters());
     text += &report::described(&fit_result.inferred);
     text += &lines(fit_result.unasked(arguments));
     text += &report::determined(&fit_result.inferred, &advice);
@@ -125,12 +123,7 @@ fn residuals(shown: &Shown<'_>) -> Chart {
     let sigma = shown.record.sigma_v[shown.channel];
     let pairs = measured.iter().zip(model);
     let residuals: Vec<f64> = pairs.map(|(a, b)| (a - b) / sigma).collect();
-    over_time(shown, "Residual (standard errors)")
-        .h_line(0.0, "")
-        .legend(Legend::Off)
-        .with(
-            Series::points("", &in_us(times), &residuals)
-                .colour(Colour::BLUE)
-                .marker(Marker::Circle),
-        )
+    over_time(shown, "Residual (standard errors)").h_line(0.0, "").legend(Legend::Off).with(
+        Series::points("", &in_us(times), &residuals).colour(Colour::BLUE).marker(Marker::Circle),
+    )
 }

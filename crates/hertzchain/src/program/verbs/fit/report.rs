@@ -37,14 +37,9 @@ pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
     text += &lines(fit_result.unasked(arguments));
     text += &widened(data).map_or(String::new(), |reported| format!("{reported}\n"));
     let advice = fit_result.advice.as_ref();
-    text += &determined(&fit_result.inferred, &|| {
-        advice.map_or(Vec::new(), Advice::words)
-    });
+    text += &determined(&fit_result.inferred, &|| advice.map_or(Vec::new(), Advice::words));
     text += &more(&fit_result.inferred);
-    text += &fit_result
-        .alternatives
-        .as_ref()
-        .map_or(String::new(), alternatives);
+    text += &fit_result.alternatives.as_ref().map_or(String::new(), alternatives);
     text += &warnings(&fit_result.inferred);
     let pairs = fit_result.pair_warning();
     text += &pairs.map_or(String::new(), |reported| format!("warning: {reported}.\n"));
@@ -90,10 +85,7 @@ fn robust(fit_result: &Inferred) -> String {
 /// How far derivatives by two step sizes agree.
 fn derivatives(fit_result: &Inferred) -> String {
     let worst = fit_result.fit.jacobian.worst_disagreement();
-    format!(
-        "Derivatives by two step sizes agree within {}\n",
-        percent(worst)
-    )
+    format!("Derivatives by two step sizes agree within {}\n", percent(worst))
 }
 
 /// What is doubtful about the minimum.
@@ -108,10 +100,7 @@ pub(super) fn warnings(fit_result: &Inferred) -> String {
         text += &format!("No limit of parameters at bounds: {why}\n");
     }
     if fit_result.fit.starts.len() > 1 {
-        let (agree, all) = (
-            fit_result.fit.agreeing_starts(),
-            fit_result.fit.starts.len(),
-        );
+        let (agree, all) = (fit_result.fit.agreeing_starts(), fit_result.fit.starts.len());
         text += &format!("{agree} of {all} starts came to this minimum.\n");
     }
     text + &other_minima(fit_result)
@@ -126,12 +115,7 @@ fn other_minima(fit_result: &Inferred) -> String {
     let line = |(start, count): &(&Started, usize)| {
         let values = fit_result.parameters.iter().zip(&start.point);
         let values = values.map(|(parameter, value)| {
-            format!(
-                "{} = {} {}",
-                parameter.name,
-                digits(*value, 6),
-                parameter.unit
-            )
+            format!("{} = {} {}", parameter.name, digits(*value, 6), parameter.unit)
         });
         format!(
             "  {} (χ² higher by {}, {count} starts)\n",
@@ -151,10 +135,7 @@ pub(super) fn values(fit_result: &Inferred) -> String {
     let row = |(at, parameter): (usize, &Parameter)| {
         let (value, sd) = (fit_result.fit.point[at], fit_result.standard_error(at));
         let limit = fit_result.limit(at).map(limit).unwrap_or_default();
-        (
-            parameter.name.clone(),
-            estimate(parameter, value, sd) + &limit,
-        )
+        (parameter.name.clone(), estimate(parameter, value, sd) + &limit)
     };
     format::pairs(&parameters.map(row).collect::<Vec<_>>())
 }
@@ -170,10 +151,7 @@ fn limit(limit: &Limit) -> String {
         }
     };
     let [narrow, wide] = limit.ends.map(end);
-    format!(
-        ": {} {narrow} (68 %), {wide} (95 %) by profile",
-        limit.side()
-    )
+    format!(": {} {narrow} (68 %), {wide} (95 %) by profile", limit.side())
 }
 
 /// Pairs whose correlation is worth a line.
@@ -208,16 +186,9 @@ fn goodness(goodness: &Goodness) -> String {
     };
     let runs = goodness.runs.map(runs_text);
     let largest = goodness.largest.as_ref();
-    let largest = largest.map(|of| {
-        format!(
-            "largest residual: {} σ ({})",
-            digits(of.sigmas, 2),
-            of.label
-        )
-    });
-    let all = std::iter::once(chi_square_text(chi_square))
-        .chain(runs)
-        .chain(largest);
+    let largest =
+        largest.map(|of| format!("largest residual: {} σ ({})", digits(of.sigmas, 2), of.label));
+    let all = std::iter::once(chi_square_text(chi_square)).chain(runs).chain(largest);
     all.collect::<Vec<_>>().join("; ") + "\n"
 }
 
@@ -228,10 +199,7 @@ fn runs_text(runs: Runs) -> String {
         false => runs.probability_more,
     };
     let (count, expected) = (runs.count, digits(runs.expected, 3));
-    format!(
-        "runs test: {} ({count} runs, {expected} expected)",
-        p_value(probability)
-    )
+    format!("runs test: {} ({count} runs, {expected} expected)", p_value(probability))
 }
 
 /// The model's own error against the data's.
@@ -313,17 +281,11 @@ fn intervals_of_profiles(fit_result: &Inferred, profiles: &[Profile]) -> String 
 }
 
 fn interpolated(error: f64, computed_m_s: &[f64]) -> String {
-    let text = format!(
-        "curves interpolated, right to {} standard errors",
-        digits(error, 2)
-    );
+    let text = format!("curves interpolated, right to {} standard errors", digits(error, 2));
     let speeds: Vec<String> = computed_m_s.iter().map(|speed| digits(*speed, 3)).collect();
     match speeds.is_empty() {
         true => text,
-        false => format!(
-            "{text}, but computed at {} m/s, where pulses jump",
-            speeds.join(", ")
-        ),
+        false => format!("{text}, but computed at {} m/s, where pulses jump", speeds.join(", ")),
     }
 }
 
@@ -363,15 +325,8 @@ fn sampled_text(fit_result: &Inferred, sampled: &Sampled) -> String {
         ]
     };
     let rows: Vec<Vec<String>> = fit_result.parameters.iter().enumerate().map(row).collect();
-    let head = [
-        "posterior",
-        "median",
-        "68 %",
-        "95 %",
-        "steps correlated",
-        "R-hat",
-        "effective samples",
-    ];
+    let head =
+        ["posterior", "median", "68 %", "95 %", "steps correlated", "R-hat", "effective samples"];
     text += &format::table(&head.map(str::to_owned), &rows);
     text
 }
@@ -407,27 +362,12 @@ fn compared_text(alternatives: &AlternativeModels, comparison: &Comparison) -> S
         ]
     };
     let rows: Vec<Vec<String>> = comparison.order.iter().map(row).collect();
-    let head = [
-        "model",
-        "free",
-        "χ²",
-        "ν",
-        "p",
-        "AICc above best",
-        "BIC",
-        "cross-validated score",
-    ];
+    let head = ["model", "free", "χ²", "ν", "p", "AICc above best", "BIC", "cross-validated score"];
     let table = format::table(&head.map(str::to_owned), &rows);
-    let without = alternatives
-        .all
-        .iter()
-        .filter(|alternative| !alternative.without.is_empty());
+    let without = alternatives.all.iter().filter(|alternative| !alternative.without.is_empty());
     let without = without.map(|alternative| {
         let settings = alternative.without.join(", ");
-        format!(
-            "{} has no such number: --set {settings} is left out there\n",
-            alternative.name
-        )
+        format!("{} has no such number: --set {settings} is left out there\n", alternative.name)
     });
     let without: String = without.collect();
     let kept = alternatives.all.iter().flat_map(|alternative| {

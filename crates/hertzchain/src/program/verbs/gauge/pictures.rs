@@ -30,10 +30,7 @@ pub(super) fn contacts(run_gauge: &GaugeResult) -> Figure {
 /// oil's K is another quantity than what was measured.
 fn has_both(run_gauge: &GaugeResult) -> bool {
     let both = |contact: &Contact| contact.combination.is_none();
-    let mut reported = run_gauge
-        .rows
-        .iter()
-        .filter_map(|row| row.contact.as_ref().ok());
+    let mut reported = run_gauge.rows.iter().filter_map(|row| row.contact.as_ref().ok());
     run_gauge.form.is_some() || reported.any(both)
 }
 
@@ -44,15 +41,10 @@ fn panel(run_gauge: &GaugeResult, of: usize, label: &str, unit: f64) -> Chart {
         0 => chart,
         _ => chart.y_log().legend(Legend::Off),
     };
-    let shown = if has_both(run_gauge) {
-        run_gauge.oils.len()
-    } else {
-        0
-    };
+    let shown = if has_both(run_gauge) { run_gauge.oils.len() } else { 0 };
     let oils = run_gauge.oils.iter().take(shown).enumerate();
-    let chart = oils.fold(chart, |chart, (at, oil)| {
-        chart.with(curve(run_gauge, (at, oil), of, unit))
-    });
+    let chart =
+        oils.fold(chart, |chart, (at, oil)| chart.with(curve(run_gauge, (at, oil), of, unit)));
     let chart = run_gauge.form.iter().fold(chart, |chart, form| {
         let speeds = speeds(run_gauge);
         let law = |sds: f64| moved_law(form, &speeds, of, unit, sds);
@@ -125,7 +117,5 @@ fn curve(run_gauge: &GaugeResult, (number, oil): (usize, &Oil), of: usize, unit:
     let values: Vec<f64> = speeds.iter().map(value).collect();
     let (colour, _) = case_look(&oil.name, number);
     let dashes = [Dash::Solid, Dash::Dashed, Dash::DashDotted, Dash::Dotted];
-    Series::line(&oil.name, &speeds, &values)
-        .colour(colour)
-        .dash(dashes[number % dashes.len()])
+    Series::line(&oil.name, &speeds, &values).colour(colour).dash(dashes[number % dashes.len()])
 }

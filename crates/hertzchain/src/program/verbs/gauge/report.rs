@@ -38,15 +38,9 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
         );
     }
     text += &held_numbers(run_gauge);
-    text += &run_gauge
-        .gauge
-        .ambiguous(&run_gauge.rows)
-        .map_or(String::new(), |why| format!("{why}\n"));
-    let oils = match run_gauge
-        .form
-        .as_ref()
-        .is_some_and(PowerForm::is_sufficient)
-    {
+    text +=
+        &run_gauge.gauge.ambiguous(&run_gauge.rows).map_or(String::new(), |why| format!("{why}\n"));
+    let oils = match run_gauge.form.as_ref().is_some_and(PowerForm::is_sufficient) {
         true => "Known oils, by the power laws that each would give",
         false => "Known oils",
     };
@@ -89,10 +83,7 @@ fn dry(run_gauge: &GaugeResult) -> String {
 /// K in GN/m^1.5 and A in ns, with their errors.
 fn shown(pair: &Pair) -> [String; 2] {
     let [(k, k_sd), (a, a_sd)] = pair.estimates();
-    [
-        reported(1e-9 * k, 1e-9 * k_sd),
-        reported(1e9 * a, 1e9 * a_sd),
-    ]
+    [reported(1e-9 * k, 1e-9 * k_sd), reported(1e9 * a, 1e9 * a_sd)]
 }
 
 /// A positive number with its error, if it is known.
@@ -121,19 +112,11 @@ fn pairs(contact: &Contact) -> Vec<[String; 3]> {
     }
     // None before the others, where nothing determines which.
     let (all, first) = match contact.is_known() {
-        true => (
-            std::iter::once(&contact.first)
-                .chain(&contact.others)
-                .collect(),
-            "",
-        ),
+        true => (std::iter::once(&contact.first).chain(&contact.others).collect(), ""),
         false => (contact.pairs(), "either"),
     };
     let words = std::iter::once(first).chain(std::iter::repeat("or"));
-    all.into_iter()
-        .zip(words)
-        .map(|(pair, words)| line(pair, words))
-        .collect()
+    all.into_iter().zip(words).map(|(pair, words)| line(pair, words)).collect()
 }
 
 fn contacts(run_gauge: &GaugeResult) -> String {
@@ -145,9 +128,7 @@ fn contacts(run_gauge: &GaugeResult) -> String {
         };
         let speeds = std::iter::once(speed).chain(std::iter::repeat(String::new()));
         let whole = speeds.zip(lines);
-        whole
-            .map(|(speed, line)| std::iter::once(speed).chain(line).collect())
-            .collect()
+        whole.map(|(speed, line)| std::iter::once(speed).chain(line).collect()).collect()
     };
     let rows: Vec<Vec<String>> = run_gauge.rows.iter().flat_map(lines).collect();
     let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", ""];
@@ -166,10 +147,9 @@ fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
     let relative = percent(law.ln_prefactor_sd);
     let (exponent, error) = with_error(law.law.exponent, law.exponent_sd);
     let fits = match law.reduced_chi_square > NO_LAW {
-        true => format!(
-            "; the values do not follow it (χ²/ν = {})",
-            digits(law.reduced_chi_square, 2)
-        ),
+        true => {
+            format!("; the values do not follow it (χ²/ν = {})", digits(law.reduced_chi_square, 2))
+        }
         false => String::new(),
     };
     format!(
@@ -192,16 +172,10 @@ fn power_laws(form: &PowerForm, speeds_m_s: &[f64]) -> String {
     };
     let chi_square = form.chi_square.map(|found| chi_square_text(found) + "\n");
     let open = form.undetermined.iter();
-    let open: String = open
-        .map(|words| format!("  Not determined: {words}.\n"))
-        .collect();
+    let open: String = open.map(|words| format!("  Not determined: {words}.\n")).collect();
     let row = |speed: &f64| {
         let [(k, k_sd), (a, a_sd)] = form.at(*speed).estimates();
-        vec![
-            digits(*speed, 4),
-            reported(1e-9 * k, 1e-9 * k_sd),
-            reported(1e9 * a, 1e9 * a_sd),
-        ]
+        vec![digits(*speed, 4), reported(1e-9 * k, 1e-9 * k_sd), reported(1e9 * a, 1e9 * a_sd)]
     };
     let rows: Vec<Vec<String>> = speeds_m_s.iter().map(row).collect();
     let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)"].map(str::to_owned);
@@ -219,12 +193,7 @@ fn power_laws(form: &PowerForm, speeds_m_s: &[f64]) -> String {
 fn held_numbers(run_gauge: &GaugeResult) -> String {
     let own = run_gauge.gauge.wet_own(&[]);
     let each = own.iter().map(|parameter| {
-        format!(
-            "{} = {} {}",
-            parameter.name,
-            digits(parameter.start, 4),
-            parameter.unit
-        )
+        format!("{} = {} {}", parameter.name, digits(parameter.start, 4), parameter.unit)
     });
     let each: Vec<String> = each.collect();
     match each.is_empty() {
@@ -259,12 +228,7 @@ fn matches(run_gauge: &GaugeResult) -> String {
         row.extend(found.map(|own| estimate(&own.parameter, own.value, own.standard_error)));
         row
     });
-    let head = [
-        "oil",
-        "distance (standard errors)",
-        "as far by chance",
-        "verdict",
-    ];
+    let head = ["oil", "distance (standard errors)", "as far by chance", "verdict"];
     let mut head: Vec<String> = head.map(str::to_owned).to_vec();
     head.extend(own.iter().map(|parameter| parameter.name.clone()));
     format::table(&head, &rows.collect::<Vec<_>>())

@@ -22,9 +22,7 @@ fn signal(example: &Example) -> Option<Chart> {
     let shot = &example.shot;
     let flight = shot.flight.as_ref().ok()?;
     let picks = &flight.picks;
-    let last = picks
-        .reflected
-        .map_or(picks.wall.time_s, |back| back.time_s);
+    let last = picks.reflected.map_or(picks.wall.time_s, |back| back.time_s);
     let margin_s = MARGIN * flight.incident_s.value;
     let (from, to) = (picks.incident.time_s - margin_s, last + margin_s);
     let at = |time_s: f64| (time_s / shot.interval_s).max(0.0) as usize;
@@ -90,11 +88,8 @@ fn with_curve(
     law: &Result<PowerLaw, FitError>,
     time: usize,
 ) -> Chart {
-    let known: Vec<(&SpeedRow, Estimate)> = case
-        .rows
-        .iter()
-        .filter_map(|row| Some((row, row.at_mean_speed_s[time]?)))
-        .collect();
+    let known: Vec<(&SpeedRow, Estimate)> =
+        case.rows.iter().filter_map(|row| Some((row, row.at_mean_speed_s[time]?))).collect();
     let column = |value: &dyn Fn(&(&SpeedRow, Estimate)) -> f64| -> Vec<f64> {
         known.iter().map(value).collect()
     };
@@ -116,21 +111,16 @@ fn with_curve(
         _ => Dash::Solid,
     };
     let line = Series::line("", &speeds, &fit_result).dash(dash);
-    chart
-        .with(points.colour(colour))
-        .with(line.colour(colour).width(FIT_WIDTH))
+    chart.with(points.colour(colour)).with(line.colour(colour).width(FIT_WIDTH))
 }
 
 /// Ratios of times to the reference's, with error bars.
 pub(super) fn ratios(curves: &Curves, reference: &str) -> Figure {
     let chart = |title: &str| {
-        Chart::new(
-            "Speed of the striker (m/s)",
-            &format!("Time of flight over {reference}"),
-        )
-        .x_log()
-        .title(title)
-        .h_line(1.0, "")
+        Chart::new("Speed of the striker (m/s)", &format!("Time of flight over {reference}"))
+            .x_log()
+            .title(title)
+            .h_line(1.0, "")
     };
     let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
     for wet in &curves.ratios {

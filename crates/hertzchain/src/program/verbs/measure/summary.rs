@@ -32,10 +32,7 @@ pub(super) fn text(measured: &Measurement, curves: &Curves, reference: &str) -> 
         );
     }
     for wet in &curves.ratios {
-        text += &format!(
-            "\n{}\n",
-            heading(&format!("{} over {reference}", named(&wet.case)))
-        );
+        text += &format!("\n{}\n", heading(&format!("{} over {reference}", named(&wet.case))));
         for (time, ratios) in [("incident", &wet.incident), ("reflected", &wet.reflected)] {
             for ratio in ratios {
                 let (value, error) = with_error(ratio.ratio.value, ratio.ratio.sigma);
@@ -52,10 +49,7 @@ pub(super) fn text(measured: &Measurement, curves: &Curves, reference: &str) -> 
 
 fn counted(measured: &Measurement) -> String {
     let timed = measured.shots.iter().filter(|shot| shot.flight.is_ok());
-    let flagged = measured
-        .shots
-        .iter()
-        .filter(|shot| !shot.flags().is_empty());
+    let flagged = measured.shots.iter().filter(|shot| !shot.flags().is_empty());
     let all = measured.shots.len() + measured.refused.len();
     format!(
         "{all} record{}, {} with times of flight, {} flagged, {} refused",
@@ -76,25 +70,16 @@ fn micro(of: Estimate) -> String {
 }
 
 fn shots(shots: &[Shot]) -> String {
-    let head = [
-        "record",
-        "v (m/s)",
-        "incident (µs)",
-        "reflected (µs)",
-        "flags",
-    ];
+    let head = ["record", "v (m/s)", "incident (µs)", "reflected (µs)", "flags"];
     let row = |shot: &Shot| {
         let flight = shot.flight.as_ref().ok();
         let name = shot.file.file_name().unwrap_or_default().to_string_lossy();
         let number = shot.shot.map_or(String::new(), |shot| format!(" {shot}"));
         vec![
             format!("{name}{number}"),
-            shot.speed_m_s
-                .map_or(String::new(), |speed| format::digits(speed.value, 4)),
+            shot.speed_m_s.map_or(String::new(), |speed| format::digits(speed.value, 4)),
             flight.map_or(String::new(), |flight| micro(flight.incident_s)),
-            flight
-                .and_then(|flight| flight.reflected_s)
-                .map_or(String::new(), micro),
+            flight.and_then(|flight| flight.reflected_s).map_or(String::new(), micro),
             shot.flags(),
         ]
     };
@@ -140,10 +125,7 @@ fn curve(case: &Case) -> String {
     let mean = |summary: Option<Summary>, shared_s: f64| {
         summary.map_or(String::new(), |s| {
             let shared_s = if s.count > 1 { shared_s } else { 0.0 };
-            micro(Estimate {
-                value: s.mean,
-                sigma: s.error.hypot(shared_s),
-            })
+            micro(Estimate { value: s.mean, sigma: s.error.hypot(shared_s) })
         })
     };
     let deviation = |summary: Option<Summary>| {

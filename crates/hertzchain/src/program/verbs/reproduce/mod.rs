@@ -50,9 +50,7 @@ fn write(computed: &Reproduction, folder: &mut Folder) -> Result<(), Failure> {
     let figures = figures(computed).map_err(|error| failure(&error))?;
     for (name, figure) in &figures {
         folder.figure(name, figure)?;
-        let pdf = figure
-            .pdf()
-            .map_err(|error| Failure::Ours(format!("{name}.pdf: {error}")))?;
+        let pdf = figure.pdf().map_err(|error| Failure::Ours(format!("{name}.pdf: {error}")))?;
         folder.write(&format!("{name}.pdf"), &pdf)?;
     }
     folder.write("captions.md", captions(&figures).as_bytes())
@@ -126,11 +124,7 @@ fn times(computed: &Reproduction) -> Table {
     for curve in &computed.evidence.curves {
         let times = SHOWN_M_S.map(|speed| {
             curve.at(speed).map_or(String::new(), |p| {
-                format!(
-                    "{:.2} / {:.2}",
-                    1e6 * p.tof_incident_s,
-                    1e6 * p.tof_reflected_s
-                )
+                format!("{:.2} / {:.2}", 1e6 * p.tof_incident_s, 1e6 * p.tof_reflected_s)
             })
         });
         table.add_row([curve.case.clone()].into_iter().chain(times));

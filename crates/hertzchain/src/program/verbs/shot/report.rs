@@ -30,17 +30,9 @@ pub(super) fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String 
         ),
     };
     if let Some(budget) = &shot.budget {
-        text += &format!(
-            "\n{}\n{}",
-            heading("Energy at the end"),
-            pairs(&energy(style, budget))
-        );
+        text += &format!("\n{}\n{}", heading("Energy at the end"), pairs(&energy(style, budget)));
     }
-    text += &format!(
-        "\n{}\n{}",
-        heading("Computation"),
-        pairs(&computation(style, shot))
-    );
+    text += &format!("\n{}\n{}", heading("Computation"), pairs(&computation(style, shot)));
     for note in &shot.notes {
         text += &format!("\nNote: {note}.\n");
     }
@@ -52,10 +44,7 @@ fn flight(style: Style, shot: &Shot) -> Rows {
     let mut rows = Rows::new();
     if let Some(flight) = shot.flight {
         let reflected = flight.reflected_s.map(|time| style.exact(time, "s"));
-        rows.push((
-            "incident time of flight".into(),
-            style.exact(flight.incident_s, "s"),
-        ));
+        rows.push(("incident time of flight".into(), style.exact(flight.incident_s, "s")));
         let reflected = reflected.unwrap_or_else(|| no_return(brief, shot));
         rows.push(("reflected time of flight".into(), reflected));
     }
@@ -68,9 +57,7 @@ fn flight(style: Style, shot: &Shot) -> Rows {
             let (velocity, time) = (brief.quantity(velocity, "m/s"), brief.quantity(time, "s"));
             format!("{velocity} at {time}")
         };
-        let first = rebound
-            .first
-            .map_or_else(|| "it never left bead 1".to_owned(), at);
+        let first = rebound.first.map_or_else(|| "it never left bead 1".to_owned(), at);
         rows.push(("striker when it first separates".into(), first));
         let end = rebound.end_s.zip(rebound.end_m_s);
         let end = end.map_or_else(|| "not followed to its end".to_owned(), at);
@@ -88,10 +75,7 @@ fn no_return(brief: Style, shot: &Shot) -> String {
     let searched_s = (shot.passage.as_ref()).map_or(0.0, |seen| seen.search_ends_s);
     match shot.duration_s < searched_s {
         true => "not waited for".to_owned(),
-        false => format!(
-            "no pulse came back until {}",
-            brief.quantity(searched_s, "s")
-        ),
+        false => format!("no pulse came back until {}", brief.quantity(searched_s, "s")),
     }
 }
 
@@ -106,18 +90,13 @@ fn last_speeds(style: Style, shot: &Shot) -> String {
     let brief = Style::brief(style.units);
     let bodies = shot.velocity_m_s.iter().enumerate();
     let bodies = bodies.take(shot.velocity_m_s.len() - 1);
-    let rows: Rows = bodies
-        .map(|(body, v)| (format!("body {body}"), brief.quantity(*v, "m/s")))
-        .collect();
+    let rows: Rows =
+        bodies.map(|(body, v)| (format!("body {body}"), brief.quantity(*v, "m/s"))).collect();
     format!("\n{}\n{}", heading("Velocities at the end"), pairs(&rows))
 }
 
 fn at(style: Style, peak: &Maximum) -> String {
-    format!(
-        "{} at {}",
-        style.quantity(peak.value, "N"),
-        style.quantity(peak.time_s, "s")
-    )
+    format!("{} at {}", style.quantity(peak.value, "N"), style.quantity(peak.time_s, "s"))
 }
 
 /// Most other maxima of the sensor bead that are listed.
@@ -135,11 +114,7 @@ fn pulses(style: Style, seen: &Passage) -> Rows {
         });
         rows.push((name.to_owned(), format!("{}{width}", at(brief, peak))));
     };
-    pulse(
-        "sensor bead, incident",
-        &seen.incident,
-        seen.incident_width_s,
-    );
+    pulse("sensor bead, incident", &seen.incident, seen.incident_width_s);
     pulse("wall", &seen.wall, seen.wall_width_s);
     if let Some(peak) = &seen.reflected {
         pulse("sensor bead, reflected", peak, seen.reflected_width_s);

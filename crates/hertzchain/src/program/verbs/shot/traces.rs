@@ -80,10 +80,7 @@ pub(super) fn write(
         let energy = energy_csv(&trace, experiment.units());
         folder.write("energy.csv", energy.as_bytes())?;
         folder.figure("signals", &pictures::signals(experiment, &trace, &shown))?;
-        folder.figure(
-            "energy",
-            &pictures::energy(&trace.budgets, experiment.units()),
-        )?;
+        folder.figure("energy", &pictures::energy(&trace.budgets, experiment.units()))?;
     }
     let columns = &trace.columns[shown.len()..];
     if arguments.npy {
@@ -142,10 +139,7 @@ fn floors(trace: &Trace, sensors: &[Sensor], wall: Option<usize>, noise: f64) ->
         let alike = alike.filter(|(other, _)| unit(other) == unit(sensor));
         alike.map(|(_, column)| largest(column)).fold(0.0, f64::max)
     };
-    sensors
-        .iter()
-        .map(|sensor| noise * of_unit(sensor))
-        .collect()
+    sensors.iter().map(|sensor| noise * of_unit(sensor)).collect()
 }
 
 fn energy_csv(trace: &Trace, units: Units) -> String {
@@ -160,16 +154,8 @@ fn energy_csv(trace: &Trace, units: Units) -> String {
     for b in &trace.budgets {
         let lost = b.dissipated.iter().map(|line| line.energy_j);
         let first = [b.time_s, b.start_j, b.driven_j, b.kinetic_j, b.elastic_j];
-        let rest = [
-            b.clipped_j,
-            b.gravity_j,
-            b.preload_j,
-            b.stop_j,
-            b.residual_j(),
-        ];
-        let cells: Vec<String> = (first.into_iter().chain(lost).chain(rest))
-            .map(cell)
-            .collect();
+        let rest = [b.clipped_j, b.gravity_j, b.preload_j, b.stop_j, b.residual_j()];
+        let cells: Vec<String> = (first.into_iter().chain(lost).chain(rest)).map(cell).collect();
         text += &format!("{}\n", cells.join(","));
     }
     text
@@ -197,11 +183,7 @@ fn npy(
 fn array(columns: &[Vec<f64>], two_dimensional: bool) -> Result<Vec<u8>, Failure> {
     let samples = columns.first().map_or(0, Vec::len) as u64;
     let shape = [columns.len() as u64, samples];
-    let shape = if two_dimensional {
-        &shape[..]
-    } else {
-        &shape[1..]
-    };
+    let shape = if two_dimensional { &shape[..] } else { &shape[1..] };
     let mut bytes = Vec::new();
     let failed = |error: std::io::Error| Failure::Ours(format!("NPY: {error}"));
     let options = npyz::WriteOptions::new().default_dtype().shape(shape);
@@ -218,9 +200,7 @@ fn animation(
     columns: &[Vec<f64>],
     bodies: &Bodies,
 ) -> Animation {
-    let radii: Vec<f64> = (bodies.first..=bodies.last)
-        .map(|b| radius(&plan.chain, b))
-        .collect();
+    let radii: Vec<f64> = (bodies.first..=bodies.last).map(|b| radius(&plan.chain, b)).collect();
     let count = bodies.count();
     let mut place = 0.0;
     let mut before = radii.first().copied().unwrap_or(0.0);

@@ -8,10 +8,7 @@ use hertzchain_sim::{BatchResult, Column};
 
 /// A line for the incident and one for the reflected times of flight.
 pub(super) fn lines(part: &BatchResult) -> String {
-    let named = [
-        ("incident", Column::Incident),
-        ("reflected", Column::Reflected),
-    ];
+    let named = [("incident", Column::Incident), ("reflected", Column::Reflected)];
     let lines = named.map(|(name, column)| {
         let (fit, uncertainty) = part.rows.law(column, part.accuracy);
         line(name, &fit, uncertainty, part.units)
@@ -59,9 +56,8 @@ impl Errors {
     /// Standard errors, but not less than what the accuracies of the times of
     /// flight alone leave open; only these where two speeds determine no others.
     fn of(law: &PowerLaw, uncertainty: Option<Uncertainty>) -> Self {
-        let (prefactor, exponent) = uncertainty.map_or((0.0, 0.0), |least| {
-            (law.prefactor * least.prefactor_relative, least.exponent)
-        });
+        let (prefactor, exponent) = uncertainty
+            .map_or((0.0, 0.0), |least| (law.prefactor * least.prefactor_relative, least.exponent));
         // The larger; a standard error that is not a number is none.
         Self {
             prefactor: prefactor.max(law.prefactor_error),

@@ -23,12 +23,7 @@ const SHOWN: [Shown; 10] = [
     ("rebound", "m/s", 1.0, Column::Rebound),
     ("competing maximum", "µs", 1e-6, Column::CompetingTime),
     ("competing peak", "N", 1.0, Column::CompetingPeak),
-    (
-        "reflected, competing",
-        "µs",
-        1e-6,
-        Column::CompetingReflectedTime,
-    ),
+    ("reflected, competing", "µs", 1e-6, Column::CompetingReflectedTime),
     ("its peak", "N", 1.0, Column::CompetingReflectedPeak),
 ];
 
@@ -68,19 +63,10 @@ fn lines(style: Style, rows: &Rows) -> String {
     let column = |(name, unit, size, of): &Shown| {
         let size = if si { *size } else { 1.0 };
         let values = rows.column(*of).iter();
-        let values: Vec<Option<f64>> = values
-            .map(|value| (!value.is_nan()).then(|| value / size))
-            .collect();
-        let digits = if name.ends_with("ToF") {
-            style.digits + 1
-        } else {
-            5
-        };
-        let head = if si {
-            format!("{name} ({unit})")
-        } else {
-            (*name).to_owned()
-        };
+        let values: Vec<Option<f64>> =
+            values.map(|value| (!value.is_nan()).then(|| value / size)).collect();
+        let digits = if name.ends_with("ToF") { style.digits + 1 } else { 5 };
+        let head = if si { format!("{name} ({unit})") } else { (*name).to_owned() };
         (head, format::column(&values, digits))
     };
     let shown = SHOWN.iter().filter(|shown| reported(rows, shown.3));
@@ -113,12 +99,7 @@ fn csv(part: &BatchResult) -> String {
         Units::Dimensionless => COLUMNS.map(table::without_unit),
     };
     let mut text = format!("{}\n", names.join(","));
-    let mut failed = part
-        .rows
-        .failed
-        .iter()
-        .map(|failed| failed.place)
-        .peekable();
+    let mut failed = part.rows.failed.iter().map(|failed| failed.place).peekable();
     for place in 0..part.rows.len() {
         if failed.next_if_eq(&place).is_some() {
             continue;

@@ -37,11 +37,7 @@ pub(crate) fn run(
 pub(crate) fn report_warnings(part: &BatchResult) {
     let speed = |place: usize| {
         let at = place / part.shard.of();
-        part.rows
-            .column(Column::Speed)
-            .get(at)
-            .copied()
-            .unwrap_or(f64::NAN)
+        part.rows.column(Column::Speed).get(at).copied().unwrap_or(f64::NAN)
     };
     if let Some(warnings) = &part.rows.warnings {
         for line in &warnings.lines {

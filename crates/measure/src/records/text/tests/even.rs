@@ -3,10 +3,7 @@ use super::*;
 /// Times of a sampling with this interval and beginning, printed to `unit`.
 fn printed(interval_s: f64, begun_s: f64, unit: f64, count: usize) -> Vec<Printed> {
     let time = |i: usize| begun_s + i as f64 * interval_s;
-    let times = (0..count).map(|i| Printed {
-        s: (time(i) / unit).round() * unit,
-        unit_s: unit,
-    });
+    let times = (0..count).map(|i| Printed { s: (time(i) / unit).round() * unit, unit_s: unit });
     times.collect()
 }
 
@@ -20,10 +17,7 @@ fn the_true_interval_is_among_those_that_digits_allow() {
                 let reported = even_interval(&times).unwrap();
                 let slack = 1e-9 * interval_s;
                 let inside = reported.least_s - slack..=reported.most_s + slack;
-                assert!(
-                    inside.contains(&interval_s),
-                    "{interval_s} {unit}: {reported:?}"
-                );
+                assert!(inside.contains(&interval_s), "{interval_s} {unit}: {reported:?}");
                 // The ends alone would leave two halves of a unit over all steps.
                 assert!(reported.most_s - reported.least_s <= 2.0 * unit / 3999.0 + slack);
             }
@@ -58,10 +52,7 @@ fn jitter_beyond_the_digits_is_borne_to_two_fifths_of_a_step() {
         even_interval(&times)
     };
     let reported = jittered(0.2e-6).unwrap();
-    assert!(
-        reported.least_s < 1e-6 && reported.most_s > 1e-6,
-        "{reported:?}"
-    );
+    assert!(reported.least_s < 1e-6 && reported.most_s > 1e-6, "{reported:?}");
     assert!(jittered(0.6e-6).is_none());
 }
 

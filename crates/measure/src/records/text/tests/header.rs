@@ -74,10 +74,7 @@ fn the_mark_of_a_comment_is_no_title() {
     ] {
         let found = header(text);
         assert_eq!(found.time.map(|time| time.0), Some(0), "{text}");
-        assert_eq!(
-            (found.names, found.channels),
-            (vec!["v".to_owned()], vec![1])
-        );
+        assert_eq!((found.names, found.channels), (vec!["v".to_owned()], vec![1]));
     }
     // A line of words is none of titles; times are reported by their even steps.
     let worded = header("# recorded\n0.5 1\n1 2\n1.5 4\n");
@@ -87,10 +84,7 @@ fn the_mark_of_a_comment_is_no_title() {
     // But a mark over numbers from 1 on is one.
     for text in ["# a\n1 0.5\n2 0.1\n3 0.9\n", "#,a\n1,0.5\n2,0.1\n3,0.9\n"] {
         let counted = header(text);
-        assert_eq!(
-            (counted.names, counted.channels),
-            (vec!["a".to_owned()], vec![1])
-        );
+        assert_eq!((counted.names, counted.channels), (vec!["a".to_owned()], vec![1]));
     }
 }
 
