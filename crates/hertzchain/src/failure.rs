@@ -1,7 +1,7 @@
 //! What went wrong, described to people.
 
 use crate::options::{SimulationOptions as How, has_unit};
-use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, Warning};
+use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, UnknownPreset, Warning};
 use hertzchain_infer::InferError;
 use hertzchain_sim::{StudyError, parse_speed};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
@@ -15,7 +15,7 @@ pub enum Failure {
     User(String),
     /// Our fault, or the machine's.
     Ours(String),
-    /// no user reads the output any more: no failure at all.
+    /// The output is not read any more: no failure at all.
     BrokenPipe,
 }
 
@@ -36,6 +36,12 @@ impl From<StudyError> for Failure {
             StudyError::Unwritable(why) => Self::Ours(why),
             other => Self::User(other.to_string()),
         }
+    }
+}
+
+impl From<UnknownPreset> for Failure {
+    fn from(error: UnknownPreset) -> Self {
+        Self::User(error.to_string())
     }
 }
 
