@@ -87,7 +87,7 @@ fn longest_decimals(text: &str) -> (usize, &str) {
     (decimals(&longest), longest)
 }
 
-/// no user gave 0.008726646259971648 or 1.1000000000000003.
+/// No user gave 0.008726646259971648 or 1.1000000000000003.
 #[test]
 fn no_number_is_told_with_digits_that_no_user_gave() {
     let folder = folder("digits");

@@ -79,7 +79,7 @@ fn batches_that_are_lost_for_good_are_told() {
     let mut chain = Chain::start(&spread, &here, &covariance, &Sampling::default()).unwrap();
     chain.advance(&spread, 20).unwrap();
     assert_eq!(spread.failure(), Some("no worker is left"));
-    // no user is asked in vain again.
+    // No user is asked in vain again.
     assert_eq!(calls.into_inner(), 7);
     let short = |batches: &[Batch]| Ok(batches.iter().map(|_| Vec::new()).collect());
     let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), 8, &short);

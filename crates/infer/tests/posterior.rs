@@ -267,7 +267,7 @@ fn a_run_that_is_killed_anywhere_and_continued_ends_like_one_that_was_not() {
         assert_eq!(continued.unwrap().unwrap(), unbroken);
         assert_eq!(read, whole);
     }
-    // no user goes on with other data by accident.
+    // No user goes on with other data by accident.
     let mut other = line();
     other.y[0] += 1.0;
     let error = whole.belongs_to(&other).unwrap_err().to_string();

@@ -71,7 +71,7 @@ fn one_fragment_is_chosen_for_all_shots_of_a_speed() {
     assert!(wrong > 0);
 }
 
-/// no user can determine which of two equal fragments is the largest: hardly a time is left. By chance
+/// No user can determine which of two equal fragments is the largest: hardly a time is left. By chance
 /// twenty shots determine a difference that is none once in 370 times.
 #[test]
 fn returns_of_equal_fragments_have_no_time() {

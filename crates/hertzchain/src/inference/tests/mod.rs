@@ -20,7 +20,7 @@ fn a_number_that_use_names_and_the_table_has_not_is_told() {
     let why = reported(&["--use=incident,returning-ratio"]).unwrap();
     let column = Observable::ReturningOverPassing.column();
     assert!(why.starts_with(&format!("a.csv: --use asks for `{column}`")), "{why}");
-    // no user asked for reflected times by name.
+    // No user asked for reflected times by name.
     assert_eq!(reported(&[]), None);
     assert_eq!(reported(&["--use=incident"]), None);
 }
