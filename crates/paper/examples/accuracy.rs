@@ -1,10 +1,10 @@
 //! Errors and force passes of the paper's shots: the tables of `docs/explanation/numerics.md`.
 //!
 //! ```sh
-//! cargo run --release -p hertzchain-study --example accuracy           # by accuracy asked
-//! cargo run --release -p hertzchain-study --example accuracy -- steps  # by step
-//! cargo run --release -p hertzchain-study --example accuracy -- rounding
-//! cargo run --release -p hertzchain-study --example accuracy -- evaluates
+//! cargo run --release -p hertzchain-paper --example accuracy           # by accuracy asked
+//! cargo run --release -p hertzchain-paper --example accuracy -- steps  # by step
+//! cargo run --release -p hertzchain-paper --example accuracy -- rounding
+//! cargo run --release -p hertzchain-paper --example accuracy -- estimates
 //! ```
 //!
 //! Errors are the larger ones of both times of flight, against the wave loop
@@ -46,9 +46,9 @@ fn main() -> Result<()> {
         None => by_accuracy(),
         Some("steps") => by_step(),
         Some("rounding") => rounding(),
-        Some("evaluates") => evaluates(),
+        Some("estimates") => evaluates(),
         Some(other) => {
-            Err(format!("`{other}` is none of `steps`, `rounding`, `evaluates`, nor nothing")
+            Err(format!("`{other}` is none of `steps`, `rounding`, `estimates`, nor nothing")
                 .into())
         }
     }

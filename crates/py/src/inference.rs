@@ -106,7 +106,7 @@ pub(crate) fn posed(
     problem(model, data, &arguments.freed)
 }
 
-/// A fit as Python is reported of it.
+/// A fit as Python gets it.
 pub(crate) struct Found {
     fit: serde_json::Value,
     rows: serde_json::Value,

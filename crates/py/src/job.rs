@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use crate::failure::Failed;
 
-/// How often Python is asked for signals and reported of progress.
+/// How often Python is asked for signals, and progress is reported.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// Room for deep calls, as a main thread has.
@@ -35,7 +35,7 @@ pub(crate) struct Job<'py> {
     pub threads: Threads,
     /// Asked once Python wants no more.
     pub stop: Stop,
-    /// What progress is reported of.
+    /// What progress counts.
     counted: fn(&Stop) -> u64,
 }
 
@@ -61,7 +61,7 @@ impl<'py> Job<'py> {
     }
 
     /// Computes without Python's lock. A signal, or a progress that raises,
-    /// breaks off and is raised. Progress is reported of what is counted on the
+    /// breaks off and is raised. Progress is what is counted on the
     /// [`Stop`] that the work gets.
     ///
     /// # Errors

@@ -3,8 +3,8 @@
 //! Uniform rows that differ in speeds and coefficients alone err alike if their steps are
 //! alike in contact times. Calibration shots, compared with ones at much shorter steps,
 //! say how much: the relative error of a time of flight over the shot's *condition*, which
-//! says how far an error of the forces moves its peaks. Every other shot then estimates its error from its
-//! own condition (`docs/explanation/numerics.md`).
+//! says how far an error of the forces moves its peaks. Every other shot then estimates its
+//! error from its own condition (`docs/explanation/numerics.md`).
 
 use crate::accuracy;
 use crate::engine::{Setting, fit_together, run_lanes, suits, systems};
@@ -72,8 +72,8 @@ const SETTINGS: [(Precision, f64, bool); 27] = {
     ]
 };
 
-/// Cost of a step in double precision, of one that locates openings, and of control per shot with its
-/// three runs that wait for whatever may come, over that of a step in single precision.
+/// Cost of a step in double precision, of one that locates openings, and of control per shot with
+/// its three runs that wait for whatever may come, over that of a step in single precision.
 const OF_DOUBLE: f64 = 2.0;
 const OF_OPENINGS: f64 = 1.2;
 const OF_PER_SHOT: f64 = 5.0;
@@ -105,7 +105,7 @@ struct Sample<'a> {
 
 impl Calibration {
     /// The setting with which the plans' family is computed soonest, those shots counted that are
-    /// not right enough and need control per shot.
+    /// not right enough and take the adaptive loop.
     ///
     /// The plans should span what the family spans: speeds, coefficients of laws.
     ///
@@ -271,7 +271,8 @@ impl<'a> Sample<'a> {
 }
 
 /// Whether nothing competes with the reflected pulse of a shot, which is then over when it has
-/// passed. Maxima that compete are exchanged and merged by small errors, which runs with equal steps may have alike.
+/// passed. Small errors exchange and merge maxima that compete, and runs with equal steps may
+/// have the same errors.
 fn is_alone(shot: &Shot) -> bool {
     let of_return = |other: &Competing| other.pulse == Pulse::Reflected;
     let passage = shot.passage.as_ref();

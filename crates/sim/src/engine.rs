@@ -28,7 +28,7 @@ pub enum Control<'a> {
         checked: bool,
     },
     /// With the steps that calibration shots chose, ten times as fast. Each shot carries its
-    /// own estimate; one whose estimate is above the accuracy asked is run as per shot.
+    /// own estimate; one whose estimate is above the accuracy asked takes the adaptive loop.
     Calibrated(&'a Calibration),
     /// By the step for the accuracy alone, as a fit needs them: nothing is computed twice, but
     /// in the adaptive loop where another maximum could be the reflected pulse's peak.

@@ -38,7 +38,7 @@ pub struct CurveOptions {
     /// Standard error of ratios of peaks where the table has none
     #[arg(long, value_name = "RATIO", allow_hyphen_values = true)]
     pub ratio_error: Option<Positive>,
-    /// Shots a row from whose scatter the standard errors come, or `known`; what the table determines in
+    /// Shots a row from whose scatter the standard errors come, or `known`; what the table gives in
     /// columns `shots` and `tof_incident_s_count` when absent. Errors from few shots are widened, so
     /// that intervals hold the truth as often as they say
     #[arg(long, value_name = "COUNT", allow_hyphen_values = true)]

@@ -27,7 +27,7 @@ pub struct MeasureOptions {
     #[command(flatten)]
     #[serde(flatten)]
     pub picking: PickOptions,
-    /// Standard error of speeds in m/s where neither file nor table determines one
+    /// Standard error of speeds in m/s where neither file nor table gives one
     #[arg(long, value_name = "SPEED")]
     pub speed_error: Option<Speed>,
     /// Speeds at most so far apart, in m/s, are one
@@ -83,7 +83,7 @@ pub struct ReadingOptions {
 #[derive(Clone, Debug, Args, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PickOptions {
-    /// How a pulse's time is reported; docs/explanation/picking.md says what each is worth
+    /// How a pulse is timed; docs/explanation/picking.md says what each is worth
     #[arg(long, value_enum, value_name = "NAME", default_value = "local")]
     pub method: MethodName,
     /// Share of its height at which `onset` times a pulse

@@ -51,7 +51,7 @@ pub struct PulseProblem {
     model: Model,
     respond: Respond,
     records: Vec<Pulses>,
-    /// Which of the speeds that the striker was reported each record has.
+    /// Which of the programmed speeds of the striker each record has.
     rows: Vec<usize>,
     speeds_m_s: Vec<f64>,
     parameters: Vec<Parameter>,

@@ -29,7 +29,7 @@ pub struct Pulses {
     pub source: String,
     /// Speed of the striker in m/s, as measured.
     pub speed_m_s: Estimate,
-    /// Speed that the striker was reported, in m/s: shots of one such speed share
+    /// Programmed speed of the striker in m/s: shots of one such speed share
     /// values a speed.
     pub programmed_m_s: f64,
     /// Time between samples in s.
