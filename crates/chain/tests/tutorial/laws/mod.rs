@@ -5,5 +5,9 @@ mod elastic_cone;
 pub use elastic_cone::ElasticCone;
 pub use hertzchain_chain::laws::*;
 
-pub static LAWS: &[Row] =
-    &[row::<ElasticHertz, 1>(), row::<ElasticPower, 2>(), row::<ElasticCone, 1>()];
+pub static LAWS: &[Row] = &[
+    row::<ElasticHertz, 1>(),
+    row::<ElasticPower, 2>(),
+    // The row that the page adds.
+    row::<ElasticCone, 1>(),
+];
