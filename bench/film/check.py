@@ -1,0 +1,185 @@
+"""Checks of contact.py against closed forms, conservation, convergence and a published program; exit code 1 if one is out of tolerance."""
+
+import sys
+
+import numpy as np
+
+from contact import Barus, Contact, Grid, Roelands, collide, drive, graded_faces
+from law import CONSTANTS, FilmLaw
+from table import through
+
+RADIUS, MODULUS = 3.175e-3, 117.03e9
+STIFFNESS = 4 / 3 * MODULUS * np.sqrt(RADIUS)
+CHECKS = []
+
+
+def check(function):
+    """Registers a check: a generator of (what, value, expected, relative tolerance, cause of the tolerance)."""
+    CHECKS.append(function)
+    return function
+
+
+def rigid(faces, viscosity, shape):
+    """A contact of practically rigid bodies with gap `shape`(r), full of oil."""
+    contact = Contact(Grid(faces, 1e30), RADIUS, viscosity)
+    contact.sphere = shape(contact.grid.r)
+    contact.overlap, contact.m = 0.0, contact.sphere.copy()
+    return contact
+
+
+@check
+def hertz_without_oil():
+    overlap = 1.5e-6
+    edge = np.sqrt(RADIUS * overlap)
+    contact = Contact(Grid(graded_faces(1.3 * edge, 200, 2 * edge), MODULUS), RADIUS, 1.0).start(overlap)
+    cause = "rings of constant pressure: error as (ring/contact)^1.5"
+    yield "force over K δ^1.5", contact.force(), STIFFNESS * overlap**1.5, 1e-5, cause
+    yield "energy over 0.4 K δ^2.5", contact.elastic_energy(), 0.4 * STIFFNESS * overlap**2.5, 1e-5, cause
+
+
+@check
+def dry_collision_loses_nothing():
+    mass, speed = 4.27e-3, 0.5
+    deepest = (1.25 * mass * speed**2 / STIFFNESS) ** 0.4
+    lasts = 3.21806545971904 * (mass / STIFFNESS) ** 0.4 * speed**-0.2
+    edge = np.sqrt(RADIUS * deepest)
+    contact = Contact(Grid(graded_faces(1.2 * edge, 120, 1.5 * edge), MODULUS), RADIUS, 1.0).start(0.0, thickness=0.0)
+    restitution, rows = collide(contact, mass, speed, lasts / 400, 1e-12)
+    yield "restitution", restitution, 1.0, 1e-6, "trapezoidal rule: energy error of third order in the step"
+    yield "duration", rows[-1, 0], lasts, 1 / 400, "one step"
+    yield "largest overlap", rows[:, 1].max(), deepest, 5e-5, "a sample every 1/400 of the contact, and the rings"
+
+
+@check
+def taylor_squeeze_of_rigid_spheres():
+    gap, viscosity, speed = 1e-6, 0.1, 0.01
+    reach = np.sqrt(2 * RADIUS * gap)
+    contact = rigid(graded_faces(3 * reach, 600, 100 * reach, 1.02), viscosity, lambda r: gap + r**2 / (2 * RADIUS))
+    step = 1e-6 * gap / speed
+    contact.step(step, speed * step)
+    # [Taylor, in Hardy and Bircumshaw 1925]: F = 6π η R² v/h for the reduced radius R.
+    yield "force", contact.force(), 6 * np.pi * viscosity * RADIUS**2 * speed / gap, 3e-4, "the outer edge at 100 √(2Rh) takes 2e-4; rings"
+
+
+@check
+def stefan_and_the_flattened_sphere():
+    gap, viscosity, speed, flat = 2e-7, 0.1, 0.01, 1e-4
+    step = 1e-6 * gap / speed
+    disc = rigid(np.linspace(0, flat, 201), viscosity, lambda r: np.full_like(r, gap))
+    disc.step(step, speed * step)
+    yield "disc: 3π η a⁴ v / (2h³)", disc.force(), 1.5 * np.pi * viscosity * flat**4 * speed / gap**3, 5e-5, "200 rings: (1/200)²"
+    shape = lambda r: gap + np.maximum(r**2 - flat**2, 0) / (2 * RADIUS)
+    sphere = rigid(graded_faces(2 * flat, 800, 30 * flat, 1.02), viscosity, shape)
+    sphere.step(step, speed * step)
+    y = flat**2 / (2 * RADIUS * gap)
+    exact = 6 * np.pi * viscosity * RADIUS**2 * speed / gap * (1 + y + y**2)
+    yield "flat disc and sphere: (6π η R² v/u)(1 + y + y²), y = a²/(2Ru)", sphere.force(), exact, 3e-4, "rings of a/400 at the kink of the gap"
+
+
+@check
+def mass_energy_and_cavitation_over_a_pulse():
+    contact, rows = through(1.5e-6, 0.119)
+    content = contact.grid.area @ contact.m + contact.lost
+    start = contact.grid.area @ contact.started
+    yield "oil kept (as a ratio)", content / start, 1.0, 1e-9, "Newton's tolerance"
+    work = np.sum(0.5 * (rows[1:, 2] + rows[:-1, 2]) * np.diff(rows[:, 1]))
+    stored = contact.elastic_energy() - rows[0, 5]
+    yield "work = stored + dissipated in the film", work, stored + contact.dissipated, 1e-2, "backward Euler, 600 steps: first order"
+    yield "least pressure over the largest", contact.p.min() + 1.0, 1.0, 1e-15, "complementarity is exact"
+
+
+@check
+def convergence_in_rings_and_steps():
+    summary = lambda rings, steps: np.array(list(through(1.5e-6, 0.119, rings=rings, steps=steps)[0].summary.values()))
+    usual, finer, shorter = summary(120, 300), summary(240, 300), summary(120, 1200)
+    for name, a, b, c in zip(("film", "force excess", "work excess", "loss"), usual, finer, shorter):
+        yield f"{name}: twice the rings", a, b, 5e-3, "asked for: 1 %"
+        yield f"{name}: four times the steps", a, c, 1e-2, "asked for: 1 %"
+
+
+@check
+def trapped_oil_of_the_first_contact_hardly_matters():
+    thin, thick = (through(6.7e-6, 0.048, trapped=t)[0].summary for t in (5e-9, 20e-9))
+    for name in thin:
+        yield name, thin[name], thick[name], 0.03, "20 nm in the first contact, 2 % of the largest"
+
+
+@check
+def viscosity_laws_meet_in_their_limits():
+    pressures = np.linspace(0, 2e9, 7)
+    roelands = Roelands(1e-8, 0.1)
+    step = 1e3
+    numeric = (roelands.potential(pressures + step)[0] - roelands.potential(pressures)[0]) / step
+    yield "Roelands: slope of its potential", numeric[3], roelands.potential(pressures + step / 2)[1][3], 1e-6, "difference quotient of rounded sums"
+    yield "Roelands: d ln η/dp at 0", -np.log(roelands.slope(1e5)) / 1e5, 1e-8, 1e-3, "curvature over 0.1 MPa"
+    plain, barus = (through(1.5e-6, 0.048, law=law)[0].summary for law in (None, Barus(1e-14)))
+    yield "Barus with α p = 1e-5: film", barus["film"], plain["film"], 1e-4, "α p"
+
+
+def bounce(stokes, cavitates, rings=120, step=0.004):
+    """Restitution of a sphere sent at a wall from one Hertz length, at 1.21 such lengths on the way back, as a published program has it.
+
+    [Bertin2024]: lengths over δ0 = (m V²/(E* √R))^0.4, h = 1 at the start, St = m V/(6π η R²). Here R = V = m = E* = 1.
+    """
+    contact = Contact(Grid(graded_faces(2.2, rings, 6.0, 1.03), 1.0), 1.0, 1 / (6 * np.pi * stokes), cavitates=cavitates)
+    contact.overlap = -1.0
+    contact.m = contact.gap()
+    return collide(contact, 1.0, 1.0, step, 1.21)[0]
+
+
+# The author's program of [Bertin2024], run with 300 points in r and a step of 0.004 in its units: Stokes number and restitution.
+# With 450 points and 0.002 it gives 0.5889 at 30, so its limit is about 0.594.
+PUBLISHED = {30: 0.5837, 100: 0.8250}
+
+
+@check
+def published_restitution():
+    for stokes, value in PUBLISHED.items():
+        yield f"bounce at St = {stokes} in oil that bears tension", bounce(stokes, False), value, 0.04, "first order in the published program's step and rings"
+
+
+@check
+def law_against_the_contact():
+    for largest, viscosity, preload in ((1.5e-6, 0.119, 0.24), (3e-6, 0.06, 0.24), (6.7e-6, 0.119, 0.12), (1.5e-6, 0.119, 0.0)):
+        contact, rows = through(largest, viscosity, preload=preload, rings=90, steps=260)
+        times, overlaps, forces = rows.T[:3]
+        law = FilmLaw(RADIUS, MODULUS, viscosity, largest).start(overlaps[0])
+        found = np.array([law.force()] + [law.step(b - a, d) for a, b, d in zip(times, times[1:], overlaps[1:])])
+        what = f"{largest * 1e6} µm, {viscosity} Pa s, {preload} N"
+        yield f"{what}: worst force over the peak, + 1", 1 + np.abs(found - forces).max() / forces.max(), 1.0, 0.03, "asked for"
+        work = lambda force: np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(overlaps))
+        yield f"{what}: loss", work(found), work(forces), 0.1, "asked for"
+
+
+@check
+def law_never_creates_energy():
+    random = np.random.default_rng(1)
+    for viscosity in (0.02, 0.1, 0.5):
+        law = FilmLaw(RADIUS, MODULUS, viscosity, 5e-6).start(1e-7)
+        step, t = 1e-8, np.arange(20000) * 1e-8
+        waves = sum(random.normal() * np.sin(2 * np.pi * t / period + random.uniform(0, 6)) for period in (8e-6, 2e-5, 6e-5, 2e-4))
+        overlaps = np.maximum(1e-7 + 1.2e-6 * (waves - waves[0]), -1e-7)
+        begun, force, work, worst, scale = law.stored(), law.force(), 0.0, np.inf, 0.0
+        for before, overlap in zip(overlaps, overlaps[1:]):
+            after = law.step(step, overlap)
+            work, force = work + 0.5 * (force + after) * (overlap - before), after
+            scale = max(scale, law.stored())
+            worst = min(worst, (work - law.stored() + begun) / scale)
+        yield f"{viscosity} Pa s: least (work − stored)/stored, + 1", 1 + min(worst, 0.0), 1.0, 2e-3, "profile on 400 nodes, trapezoidal work"
+        yield f"{viscosity} Pa s: work = stored + dissipated", work, law.stored() - begun + law.dissipated, 2e-2, "the same, over many changes of direction"
+
+
+def main():
+    bad = 0
+    for function in CHECKS:
+        if len(sys.argv) > 1 and sys.argv[1] not in function.__name__:
+            continue
+        for what, value, expected, tolerance, cause in function():
+            off = abs(value - expected) / abs(expected)
+            bad += not off <= tolerance
+            print("ok " if off <= tolerance else "BAD", f"{function.__name__}: {what}: {value:.6g}, off by {off:.1e} of {tolerance:.0e} ({cause})", flush=True)
+    return bad > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
