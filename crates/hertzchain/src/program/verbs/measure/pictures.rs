@@ -36,10 +36,10 @@ fn signal(example: &Example) -> Option<Chart> {
         chart = chart.with(Series::line(name, &times, shown).dash(Dash::Solid));
     }
     chart = chart
-        .v_line(1e6 * picks.incident.time_s, "passing")
+        .v_line(1e6 * picks.incident.time_s, "incident")
         .v_line(1e6 * picks.wall.time_s, "wall");
     Some(match picks.reflected {
-        Some(back) => chart.v_line(1e6 * back.time_s, "returning"),
+        Some(back) => chart.v_line(1e6 * back.time_s, "reflected"),
         None => chart,
     })
 }
