@@ -18,7 +18,7 @@ text      not executed
 
 Comments before a block, invisible on the page, change this:
 
-<!-- before: SCRIPT -->    a bash script that is run first, such as one that makes a file of the reader's
+<!-- before: SCRIPT -->    a bash script that is run first, such as "$DOCS/record.py", which makes recordings
 <!-- tested by: FILE -->   another test of this repository runs the next block
 <!-- rust: FILE -->        that test compiles and runs the page's blocks of Rust
 <!-- not run: REASON -->   the next block is not executed
@@ -71,7 +71,7 @@ class Page:
     def __init__(self, path: Path, folder: Path, program: Path) -> None:
         self.path, self.folder = path, folder
         search = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
-        self.environment = {**os.environ, "PATH": search, "MPLBACKEND": "Agg", "NO_COLOR": "1"}
+        self.environment = {**os.environ, "PATH": search, "MPLBACKEND": "Agg", "NO_COLOR": "1", "DOCS": f"{ROOT / 'docs'}"}
         self.printed: str | None = None
         self.experiment: str | None = None
         self.python: subprocess.Popen[str] | None = None
