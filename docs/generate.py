@@ -13,8 +13,6 @@ from shutil import copyfile
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
-VERBS = ["shot", "sweep", "campaign", "measure", "fit", "gauge", "design", "theory", "check", "reproduce"]
-VERBS += ["merge", "laws", "presets", "schema", "completions", "man"]
 BIBLIOGRAPHY = (ROOT / "references.bib").read_text(encoding="utf-8")
 # Links that leave docs/.
 OUTSIDE = re.compile(r"\[([^\]]+)\]\((?:\.\./)+((?:crates|experiments|bench)[^)#]*|[A-Z]+\.md)[^)]*\)")
@@ -88,8 +86,9 @@ def default(row: dict[str, Any]) -> str:
 
 def command_line() -> str:
     """Help of every verb."""
-    parts = ["# Command line", "", "```text", program("--help").rstrip(), "```", ""]
-    for verb in VERBS:
+    overview = program("--help").rstrip()
+    parts = ["# Command line", "", "```text", overview, "```", ""]
+    for verb in re.findall(r"^  (?!help )([a-z-]+)  ", overview, re.MULTILINE):
         parts += [f"## hertzchain {verb}", "", "```text", program(verb, "--help").rstrip(), "```", ""]
     return "\n".join(parts)
 
