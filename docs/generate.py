@@ -67,9 +67,9 @@ def laws() -> str:
     """Contact laws from the registry."""
     parts = ["# Contact laws", "", "From the program's registry, as `hertzchain laws` prints them.", ""]
     for law in json.loads(program("laws", "--json")):
-        parts += [f"## {law['name']}", "", f"> {law['equation']}", ""]
+        parts += [f"## {law['name']}", "", f"> {cell(law['equation'])}", ""]
         acts = "while the contact is closed" if law["gated"] else "always, also across gaps"
-        parts += [f"A law that is {law['nature']} and acts {acts}. Valid for {law['validity']} [{law['reference']}].", ""]
+        parts += [f"A law that is {law['nature']} and acts {acts}. Valid for {cell(law['validity'])} [{law['reference']}].", ""]
         parts += ["| parameter | unit | meaning | default |", "|---|---|---|---|"]
         parts += [f"| `{row['name']}` | {row['unit']} | {row['meaning']} | {default(row)} |" for row in law["parameters"]]
         parts.append("")
