@@ -6,6 +6,7 @@ The program `hertzchain` must be on the path: it prints what it has declared.
 import json
 import re
 import subprocess
+import tempfile
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 BIBLIOGRAPHY = (ROOT / "references.bib").read_text(encoding="utf-8")
 # Links that leave docs/.
 OUTSIDE = re.compile(r"\[([^\]]+)\]\((?:\.\./)+((?:crates|experiments|bench)[^)#]*|[A-Z]+\.md)[^)]*\)")
+FRAME = '<iframe class="film" src="../_static/first-chain.html" title="Film of the shot" loading="lazy"></iframe>'
 KEYS = set(re.findall(r"^@\w+\{(\w+),", BIBLIOGRAPHY, re.MULTILINE))
 
 
@@ -36,10 +38,21 @@ def write(folder: Path) -> None:
     notebooks.mkdir(exist_ok=True)
     for notebook in (ROOT / "crates/py/examples").glob("*.ipynb"):
         copyfile(notebook, notebooks / notebook.name)
+    film(folder)
     for name, text in pages.items():
         page = folder / "reference" / f"{name}.md"
         if not page.exists() or page.read_text(encoding="utf-8") != text:
             page.write_text(text, encoding="utf-8")
+
+
+def film(folder: Path) -> None:
+    """The first tutorial's shot as a film, which its page shows in a frame on the site."""
+    page = (folder / "tutorials/my-first-chain.md").read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as name:
+        row = Path(name) / "my-row.toml"
+        row.write_text(re.search(r"```toml\n(# my-row\.toml\n.*?)```", page, re.DOTALL)[1], encoding="utf-8")
+        program("shot", str(row), "--out", f"{name}/shot", "--animate")
+        copyfile(f"{name}/shot/animation.html", folder / "static/first-chain.html")
 
 
 def complete(_app: Any, page: str, source: list[str]) -> None:
@@ -49,6 +62,7 @@ def complete(_app: Any, page: str, source: list[str]) -> None:
 
 
 def completed(text: str) -> str:
+    text = text.replace("<!-- film -->", f"```{{raw}} html\n{FRAME}\n```")
     text = re.sub(r"(?<![\]`\w])\[(\w+\d{4})\](?!\()", lambda found: cited(found, "{cite:p}"), text)
     return OUTSIDE.sub(r"\1 (`\2`)", text)
 
