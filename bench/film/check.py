@@ -119,7 +119,7 @@ def viscosity_laws_meet_in_their_limits():
 def bounce(stokes, cavitates, rings=120, step=0.004):
     """Restitution of a sphere sent at a wall from one Hertz length, at 1.21 such lengths on the way back, as a published program has it.
 
-    [Bertin2024]: lengths over δ0 = (m V²/(E* √R))^0.4, h = 1 at the start, St = m V/(6π η R²). Here R = V = m = E* = 1.
+    Bertin (J. Fluid Mech., 2024): lengths over δ0 = (m V²/(E* √R))^0.4, h = 1 at the start, St = m V/(6π η R²). Here R = V = m = E* = 1.
     """
     contact = Contact(Grid(graded_faces(2.2, rings, 6.0, 1.03), 1.0), 1.0, 1 / (6 * np.pi * stokes), cavitates=cavitates)
     contact.overlap = -1.0
@@ -127,7 +127,7 @@ def bounce(stokes, cavitates, rings=120, step=0.004):
     return collide(contact, 1.0, 1.0, step, 1.21)[0]
 
 
-# The author's program of [Bertin2024], run with 300 points in r and a step of 0.004 in its units: Stokes number and restitution.
+# The author's program of Bertin (J. Fluid Mech., 2024), run with 300 points in r and a step of 0.004 in its units: Stokes number and restitution.
 # With 450 points and 0.002 it gives 0.5889 at 30, so its limit is about 0.594.
 PUBLISHED = {30: 0.5837, 100: 0.8250}
 
