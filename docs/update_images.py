@@ -15,9 +15,9 @@ from run_blocks import ROOT, run
 # Image: the page's file.
 PAGES = {
     "my-first-chain": {"first-chain-signals": "shot/signals.png", "first-chain-sweep": "lossy/sweep.png"},
-    "from-a-recording": {"recording-picks": "measured/signals.png", "recording-curve": "curve/curves.png"},
-    "fit-and-find-the-oil": {"fit": "fitted/fit.png", "gauge": "gauged/gauge.png"},
-    "a-virtual-rig": {"rig-curves": "measured/curves.png"},
+    "from-a-recording": {"recording-picks": "measured/signals.png", "recording-curve": "curve/times-of-flight.png"},
+    "fit-and-find-the-oil": {"fit": "fitted/fit.png", "gauge": "gauged/contacts.png"},
+    "a-virtual-rig": {"rig-curves": "measured/times-of-flight.png"},
     "feel-a-specimen": {"specimen-signals": "probe/signals.png", "specimen-calibration": "calibration.png"},
     "dimers-and-long-chains": {"band-gap": "band-gap.png"},
     "a-lesson": {"cradle-contacts": "contacts.png"},
