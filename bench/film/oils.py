@@ -67,7 +67,7 @@ def paper(oil, speed):
 
 def main():
     preload = float(sys.argv[1]) if len(sys.argv) > 1 else 0.24
-    print(f"static load {preload} N; η in Pa s at 20, 25, 40 °C:", {oil: [round(viscosity(oil, t), 4) for t in (20, 25, 40)] for oil in OILS})
+    print(f"static load {preload} N; η in Pa s at 20, 25, 40 °C:", {oil: [round(float(viscosity(oil, t)), 4) for t in (20, 25, 40)] for oil in OILS})
     print("| oil | v0, m/s | wet/dry | least | largest | α = 0 | with cubic |\n|---|---|---|---|---|---|---|")
     for speed in SPEEDS:
         dry = shot(speed, None, preload, **COARSE)[0]
