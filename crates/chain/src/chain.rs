@@ -70,7 +70,6 @@ pub enum Push {
 
 impl Push {
     /// Force at rest in N.
-    #[must_use]
     pub fn force_n(&self) -> f64 {
         match *self {
             Self::None => 0.0,

@@ -14,7 +14,6 @@ impl Default for InstructionSet {
 
 impl InstructionSet {
     /// All that this machine has, best first.
-    #[must_use]
     pub fn available() -> Vec<Self> {
         let best = Level::new();
         #[cfg(target_arch = "x86_64")]
@@ -29,13 +28,11 @@ impl InstructionSet {
     }
 
     /// One by its name, if this machine has it.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::available().into_iter().find(|set| set.name() == name)
     }
 
     /// `avx512`, `avx2`, `sse2`, `neon` or `scalar`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self.0 {
             #[cfg(target_arch = "x86_64")]

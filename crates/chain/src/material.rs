@@ -26,7 +26,6 @@ impl Material {
     };
 
     /// An elastic material without viscosity.
-    #[must_use]
     pub const fn elastic(young_modulus_pa: f64, poisson_ratio: f64) -> Self {
         Self {
             young_modulus_pa,
@@ -37,14 +36,12 @@ impl Material {
     }
 
     /// Contact compliance D = (1 − ν²)/Y in 1/Pa; 0 for a rigid body.
-    #[must_use]
     pub fn compliance_per_pa(&self) -> f64 {
         (1.0 - self.poisson_ratio * self.poisson_ratio) / self.young_modulus_pa
     }
 
     /// Viscoelastic relaxation time of [Goldobin2015] in s,
     /// A = (1/Y) (1+ν)/(1−ν) [ (4/3) η1 (1−ν+ν²) + η2 (1−2ν)² ].
-    #[must_use]
     pub fn relaxation_time_s(&self) -> f64 {
         let nu = self.poisson_ratio;
         let shear = 4.0 / 3.0 * self.shear_viscosity_pa_s * (1.0 - nu + nu * nu);
@@ -54,7 +51,6 @@ impl Material {
 
     /// Relaxation time of [Brilliantov1996] in s,
     /// A = (1/3) (3η2 − η1)²/(3η2 + 2η1) · (1−ν²)(1−2ν)/(Y ν²).
-    #[must_use]
     pub fn relaxation_time_1996_s(&self) -> f64 {
         let nu = self.poisson_ratio;
         let (shear, bulk) = (self.shear_viscosity_pa_s, self.bulk_viscosity_pa_s);
@@ -81,7 +77,6 @@ pub struct Pair {
 
 impl Pair {
     /// Hertz stiffness K = (4/3) √R*/(D1 + D2) in N/m^{3/2} [Hertz1881].
-    #[must_use]
     pub fn hertz_stiffness(&self) -> f64 {
         let compliance = self.left.compliance_per_pa() + self.right.compliance_per_pa();
         4.0 / 3.0 * self.radius_m.sqrt() / compliance
@@ -89,7 +84,6 @@ impl Pair {
 
     /// Compliance-weighted mean (A1 D1 + A2 D2)/(D1 + D2) of a relaxation
     /// time in s, as unlike bodies share one [Goldobin2015].
-    #[must_use]
     pub fn mean_relaxation_time_s(&self, of: fn(&Material) -> f64) -> f64 {
         let (left, right) = (self.left.compliance_per_pa(), self.right.compliance_per_pa());
         let weigh = |material: &Material, compliance: f64| {

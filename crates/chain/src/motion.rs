@@ -31,7 +31,6 @@ pub enum Motion {
 
 impl Motion {
     /// Position in m and velocity in m/s at a time in s.
-    #[must_use]
     pub fn at(&self, time_s: f64) -> (f64, f64) {
         match self {
             Self::Sine { amplitude_m, frequency_hz } => {
@@ -49,8 +48,7 @@ impl Motion {
 
     /// The first time after `time_s` at which the motion is not smooth; a
     /// step must end there.
-    #[must_use]
-    pub fn next_break(&self, time_s: f64) -> f64 {
+    pub(crate) fn next_break(&self, time_s: f64) -> f64 {
         match self {
             Self::Sine { .. } => f64::INFINITY,
             Self::Pulse { duration_s, .. } if time_s < *duration_s => *duration_s,
@@ -86,7 +84,6 @@ impl Motion {
     }
 
     /// The longest step in s that cannot step over a swing of the motion.
-    #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         match self {
             Self::Sine { frequency_hz, .. } => 0.05 / frequency_hz.abs(),
@@ -96,7 +93,6 @@ impl Motion {
     }
 
     /// A speed in m/s that the motion reaches, for scales.
-    #[must_use]
     pub fn largest_speed_m_s(&self) -> f64 {
         match self {
             Self::Sine { amplitude_m, frequency_hz } => TAU * (amplitude_m * frequency_hz).abs(),

@@ -13,6 +13,7 @@ use crate::report::{FileProblem, short};
 use crate::settings::{BodyShape, Far, Near};
 use crate::spec::Spec;
 use crate::validity;
+use crate::values::Units;
 use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Section, Start};
 use std::ops::RangeInclusive;
 
@@ -29,6 +30,10 @@ pub(crate) fn chain(
     let (Some(first), Some(last)) = (beads.first(), beads.last()) else {
         return Err(FileProblem::new(&(0..0), "the chain has no beads", "expected at least one"));
     };
+    if spec.units == Units::Si {
+        let groups = spec.groups.iter();
+        warnings.extend(groups.flat_map(|g| g.improbable(&spec.materials, &materials)));
+    }
     warnings.extend(inelastic(spec));
     warnings.extend(closed_gaps(spec));
     let mut chain = Chain {

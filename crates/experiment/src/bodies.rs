@@ -2,11 +2,11 @@
 
 use crate::document::as_key;
 use crate::keys::{LENGTH, MASS, MOST_BEADS};
-use crate::report::{FileProblem, nearest_word, short, to_digits};
-use crate::values::{SpeedLaw, Units, View};
+use crate::report::{FileProblem, brief, nearest_word, short, to_digits};
+use crate::values::{SpeedLaw, TableView, Units};
 use hertzchain_chain::{Bead, Material};
 use std::f64::consts::PI;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 /// One material as written.
 #[derive(Clone, Debug)]
@@ -29,14 +29,14 @@ pub(crate) struct MaterialSpec {
 pub(crate) struct Materials(pub(crate) Vec<MaterialSpec>);
 
 impl Materials {
-    pub(crate) fn read(root: &View<'_>) -> Result<Self, FileProblem> {
+    pub(crate) fn read(root: &TableView<'_>) -> Result<Self, FileProblem> {
         let named = root.named("materials").into_iter();
         let specs = named.map(|(name, span, table)| MaterialSpec::read(name, span, &table));
         Ok(Self(specs.collect::<Result<_, _>>()?))
     }
 
     /// The material that a table names.
-    pub(crate) fn find(&self, table: &View<'_>) -> Result<Option<usize>, FileProblem> {
+    pub(crate) fn find(&self, table: &TableView<'_>) -> Result<Option<usize>, FileProblem> {
         let Some(name) = table.text("material") else {
             return Ok(None);
         };
@@ -44,7 +44,7 @@ impl Materials {
         at.map(Some).ok_or_else(|| self.unknown(table, name))
     }
 
-    fn unknown(&self, table: &View<'_>, name: &str) -> FileProblem {
+    fn unknown(&self, table: &TableView<'_>, name: &str) -> FileProblem {
         let names: Vec<&str> = self.0.iter().map(|m| m.name.as_str()).collect();
         let message = format!("there is no material `{name}`");
         let problem = table.problem("material", message, expected_material(&names));
@@ -81,7 +81,7 @@ pub(crate) fn expected_material(names: &[&str]) -> String {
 }
 
 impl MaterialSpec {
-    fn read(name: &str, span: Range<usize>, table: &View<'_>) -> Result<Self, FileProblem> {
+    fn read(name: &str, span: Range<usize>, table: &TableView<'_>) -> Result<Self, FileProblem> {
         let needed = |key: &str| {
             let message = || format!("material `{name}` has no `{key}`");
             let missing = || FileProblem::new(&span, message(), "expected it in this table");
@@ -219,6 +219,47 @@ impl BeadGroup {
         }
     }
 
+    /// Warnings of beads that no laboratory has, as when a unit is wrong.
+    pub(crate) fn improbable(&self, specs: &Materials, values: &[Material]) -> Vec<FileProblem> {
+        /// Larger than any ball that rolls.
+        const LARGEST_M: f64 = 0.5;
+        /// From foams to above osmium, in kg/m³.
+        const DENSITIES: RangeInclusive<f64> = 10.0..=25e3;
+        /// Glasses, ceramics and metals are denser than plastics; the softest of them, lead, has 16 GPa.
+        const DENSE_KG_M3: f64 = 2400.0;
+        const SOFT_PA: f64 = 5e9;
+        let mut warnings = Vec::new();
+        let mut warn = |span: &Range<usize>, message: String, label: &str| {
+            warnings.push(FileProblem::new(span, message, label));
+        };
+        for part in &self.cell {
+            let density = part.mass_kg / sphere_mass_kg(part.radius_m, 1.0);
+            let shown = format!("{} g/cm^3", to_digits(1e-3 * density, 3));
+            if part.radius_m > LARGEST_M {
+                let message = format!("these beads have a radius of {} m", short(part.radius_m));
+                warn(&self.span, message, "larger than any ball that rolls: is the unit right?");
+            }
+            if !DENSITIES.contains(&density) {
+                let label = "no solid has it: are radius, mass and their units right?";
+                warn(&self.span, format!("these beads have a density of {shown}"), label);
+            }
+            let Some(at) = part.material.filter(|_| density > DENSE_KG_M3) else { continue };
+            if let (Some(spec), Some(value)) = (specs.0.get(at), values.get(at))
+                && value.young_modulus_pa < SOFT_PA
+            {
+                let modulus = brief(1e-6 * value.young_modulus_pa);
+                let message = format!(
+                    "`{}` has a Young modulus of {modulus} MPa, and its beads a density of {shown}",
+                    spec.name
+                );
+                let label = "solids as dense have at least some GPa: is the unit right?";
+                warn(&spec.young_modulus.span, message, label);
+            }
+        }
+        warnings.dedup_by(|next, first| next.message == first.message);
+        warnings
+    }
+
     fn scale(&self, repetition: usize) -> f64 {
         let power = i32::try_from(repetition).unwrap_or(i32::MAX);
         self.radius_ratio.powi(power)
@@ -232,7 +273,7 @@ pub(crate) fn sphere_mass_kg(radius_m: f64, density_kg_m3: f64) -> f64 {
 
 /// All groups of a file.
 pub(crate) fn groups(
-    root: &View<'_>,
+    root: &TableView<'_>,
     materials: &Materials,
 ) -> Result<Vec<BeadGroup>, FileProblem> {
     let tables = root.tables("beads");
@@ -258,7 +299,7 @@ pub(crate) fn groups(
     Ok(groups)
 }
 
-fn group(table: &View<'_>, materials: &Materials) -> Result<BeadGroup, FileProblem> {
+fn group(table: &TableView<'_>, materials: &Materials) -> Result<BeadGroup, FileProblem> {
     let has_cell = table.has("cell");
     let (foreign, why): (&[&str], _) = match has_cell {
         true => (&["count", "radius", "mass", "material"], "with a cell; use `repeat`"),
@@ -296,7 +337,7 @@ fn group(table: &View<'_>, materials: &Materials) -> Result<BeadGroup, FileProbl
 }
 
 fn part(
-    table: &View<'_>,
+    table: &TableView<'_>,
     materials: &Materials,
     count: Option<usize>,
 ) -> Result<CellPart, FileProblem> {

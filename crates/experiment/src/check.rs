@@ -2,8 +2,8 @@
 
 use crate::bodies::expected_material;
 use crate::contacts;
-use crate::document::{Node, TableEntry, Value};
-use crate::keys::{self, Fields, Key, Kind, Need, ROOT, ValueLimits, Variants};
+use crate::document::{Node, TableEntry, TomlValue};
+use crate::keys::{self, Fields, Key, KeyKind, Need, ROOT, ValueLimits, Variants};
 use crate::report::{FileProblem, nearest_word};
 use crate::spec::BEADS;
 use crate::units;
@@ -89,9 +89,9 @@ impl FormCheck<'_> {
 
     fn value(&mut self, key: &'static Key, node: &Node) {
         match &key.kind {
-            Kind::Quantity(unit, limits) => self.quantity(key.name, unit, *limits, node),
-            Kind::Scaled(unit, limits) => self.scaled(key.name, unit, *limits, node),
-            Kind::Quantities(unit) => {
+            KeyKind::Quantity(unit, limits) => self.quantity(key.name, unit, *limits, node),
+            KeyKind::Scaled(unit, limits) => self.scaled(key.name, unit, *limits, node),
+            KeyKind::Quantities(unit) => {
                 let before = self.problems.len();
                 self.each(key, node, |check, member| {
                     check.quantity(key.name, unit, ValueLimits::ANY, member);
@@ -101,24 +101,24 @@ impl FormCheck<'_> {
                 own.dedup_by(|next, first| next.message == first.message);
                 self.problems.append(&mut own);
             }
-            Kind::Count { least, most } => self.count(key.name, *least, *most, node),
-            Kind::Counts => self.each(key, node, |check, member| {
+            KeyKind::Count { least, most } => self.count(key.name, *least, *most, node),
+            KeyKind::Counts => self.each(key, node, |check, member| {
                 check.count(key.name, 0, i64::MAX, member);
             }),
-            Kind::Choice(options) => self.choice(key.name, options, node),
-            Kind::Text if key.name == "material" => self.material(node),
-            Kind::Text => self.kind(key, node, "text in quotes", node.text().is_some()),
-            Kind::Flag => {
-                let fits = matches!(node.value, Value::Flag(_));
+            KeyKind::Choice(options) => self.choice(key.name, options, node),
+            KeyKind::Text if key.name == "material" => self.material(node),
+            KeyKind::Text => self.kind(key, node, "text in quotes", node.text().is_some()),
+            KeyKind::Flag => {
+                let fits = matches!(node.value, TomlValue::Flag(_));
                 self.kind(key, node, "true or false", fits);
             }
-            Kind::Table(fields) => self.table(node, fields, None),
-            Kind::Tables(fields) => {
+            KeyKind::Table(fields) => self.table(node, fields, None),
+            KeyKind::Tables(fields) => {
                 self.each(key, node, |check, member| check.table(member, fields, None));
             }
-            Kind::Named(fields) => self.named(key, node, fields),
-            Kind::Variants(variants) => self.variants(node, variants),
-            Kind::Laws => self.each(key, node, |check, member| {
+            KeyKind::Named(fields) => self.named(key, node, fields),
+            KeyKind::Variants(variants) => self.variants(node, variants),
+            KeyKind::Laws => self.each(key, node, |check, member| {
                 check.problems.extend(contacts::check_law(member, check.units));
             }),
         }
@@ -148,13 +148,15 @@ impl FormCheck<'_> {
 
     fn each(&mut self, key: &Key, node: &Node, mut check: impl FnMut(&mut Self, &Node)) {
         match (&node.value, &key.kind) {
-            (Value::List(members), Kind::Counts) => members.iter().for_each(|m| check(self, m)),
-            (Value::List(members), _) if members.is_empty() => {
+            (TomlValue::List(members), KeyKind::Counts) => {
+                members.iter().for_each(|m| check(self, m))
+            }
+            (TomlValue::List(members), _) if members.is_empty() => {
                 let message = format!("`{}` is empty", key.name);
                 self.add(&node.span, message, "expected at least one member");
             }
-            (Value::List(members), _) => members.iter().for_each(|m| check(self, m)),
-            (_, Kind::Tables(fields)) => {
+            (TomlValue::List(members), _) => members.iter().for_each(|m| check(self, m)),
+            (_, KeyKind::Tables(fields)) => {
                 let expected = format!("a list of tables, written {}", written(fields));
                 self.kind(key, node, &expected, false);
             }
@@ -238,7 +240,7 @@ impl FormCheck<'_> {
         self.kind(key, node, &expected, node.is_table());
         if let Some(entry) = node.entries().iter().find(|entry| !entry.node.is_table()) {
             let label = match entry.node.value {
-                Value::List(_) => format!("expected a table, written [{name}.{}]", entry.key),
+                TomlValue::List(_) => format!("expected a table, written [{name}.{}]", entry.key),
                 _ => format!("expected it in a table with a name, such as [{name}.steel]"),
             };
             let message = format!("`{}` stands in [{name}] itself", entry.key);
@@ -297,7 +299,7 @@ fn bead_count(tree: &Node) -> Option<i64> {
     let count = |table: &Node, key: &str| match table.get(key).map(|node| &node.value) {
         None => Some(1),
         // A chain has at most some millions of beads.
-        Some(Value::Number(number)) if (1.0..1e9).contains(&number.value) => {
+        Some(TomlValue::Number(number)) if (1.0..1e9).contains(&number.value) => {
             Some(number.value as i64)
         }
         Some(_) => None,
@@ -330,14 +332,14 @@ fn written(fields: &Fields) -> &'static str {
 fn example(key: &Key) -> String {
     let name = key.name;
     match &key.kind {
-        Kind::Quantity("1", _) | Kind::Scaled("1", _) => format!("`{name} = 0.3`"),
-        Kind::Quantity(unit, _) | Kind::Scaled(unit, _) => {
+        KeyKind::Quantity("1", _) | KeyKind::Scaled("1", _) => format!("`{name} = 0.3`"),
+        KeyKind::Quantity(unit, _) | KeyKind::Scaled(unit, _) => {
             let example = units::parse_unit(unit).map(|unit| unit.dimension.example());
             format!("`{name} = \"{}\"`", example.unwrap_or_default())
         }
-        Kind::Tables(_) => format!("a table [[{name}]]"),
-        Kind::Count { .. } => format!("`{name} = 1`"),
-        Kind::Laws => "`laws = [\"elastic_hertz\"]`".to_owned(),
+        KeyKind::Tables(_) => format!("a table [[{name}]]"),
+        KeyKind::Count { .. } => format!("`{name} = 1`"),
+        KeyKind::Laws => "`laws = [\"elastic_hertz\"]`".to_owned(),
         _ => format!("`{name} = \"…\"`"),
     }
 }

@@ -1,10 +1,10 @@
 //! Sections of contacts and their laws, by the declarations of the registry.
 
 use crate::bodies::{BeadGroup, Materials};
-use crate::document::{Node, Value};
+use crate::document::{Node, TomlValue};
 use crate::keys::ValueLimits;
 use crate::report::{FileProblem, nearest_word};
-use crate::values::{ExpectedQuantity, Units, View, whole};
+use crate::values::{ExpectedQuantity, TableView, Units, whole};
 use hertzchain_chain::laws::{LAWS, Law, LawError, Nature, Parameter, Row, Source, find};
 use std::ops::Range;
 use std::sync::Arc;
@@ -174,7 +174,7 @@ fn keys_of(row: &Row) -> Vec<&'static str> {
 /// The registry row that a member of `laws` names.
 pub(crate) fn row_of(node: &Node) -> Result<&'static Row, FileProblem> {
     let name = match node.value {
-        Value::Table(_) => node.get("law").ok_or_else(|| {
+        TomlValue::Table(_) => node.get("law").ok_or_else(|| {
             let label = "expected { law = \"name\", parameter = value, … }";
             let problem = FileProblem::new(&node.span, "this law has no name", label);
             let mut words = ["name", "type", "kind", "model"].into_iter();
@@ -267,13 +267,13 @@ fn exponent(parameter: &Parameter, node: &Node, units: Units) -> String {
 
 /// All sections of a file, in the order of the contacts.
 pub(crate) fn read(
-    root: &View<'_>,
+    root: &TableView<'_>,
     materials: &Materials,
     groups: &[BeadGroup],
 ) -> Result<Vec<SectionSpec>, FileProblem> {
     let beads = groups.iter().map(BeadGroup::count).sum();
     let tables = root.tables("contacts");
-    let section = |table: &View<'_>| section(table, materials, beads);
+    let section = |table: &TableView<'_>| section(table, materials, beads);
     let mut sections: Vec<SectionSpec> = tables.iter().map(section).collect::<Result<_, _>>()?;
     if sections.is_empty() {
         sections.push(hertz(root));
@@ -289,7 +289,7 @@ pub(crate) fn read(
 }
 
 /// The default of a dimensionless chain: Hertz contacts.
-fn hertz(root: &View<'_>) -> SectionSpec {
+fn hertz(root: &TableView<'_>) -> SectionSpec {
     let law = find("elastic_hertz").map(|row| LawSpec {
         row,
         given: Vec::new(),
@@ -310,7 +310,7 @@ fn hertz(root: &View<'_>) -> SectionSpec {
 }
 
 fn section(
-    table: &View<'_>,
+    table: &TableView<'_>,
     materials: &Materials,
     beads: usize,
 ) -> Result<SectionSpec, FileProblem> {

@@ -1,6 +1,6 @@
 //! A file's text as a tree of values with their places, and what is no TOML in it.
 
-use crate::keys::{Kind, ROOT};
+use crate::keys::{KeyKind, ROOT};
 use crate::report::FileProblem;
 use crate::units;
 use std::io::{Error as IoError, Read};
@@ -12,14 +12,14 @@ use toml::de::{DeString, DeTable, DeValue, Error};
 /// One value with its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node {
-    pub(crate) value: Value,
+    pub(crate) value: TomlValue,
     pub(crate) span: Range<usize>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Value {
+pub(crate) enum TomlValue {
     Text(String),
-    Number(Number),
+    Number(TomlNumber),
     Flag(bool),
     List(Vec<Node>),
     Table(Vec<TableEntry>),
@@ -29,7 +29,7 @@ pub(crate) enum Value {
 
 /// A number without quotes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Number {
+pub(crate) struct TomlNumber {
     pub(crate) value: f64,
     /// Half a unit of the last digit written.
     pub(crate) half_digit: f64,
@@ -45,17 +45,17 @@ pub(crate) struct TableEntry {
     pub(crate) node: Node,
 }
 
-impl Value {
+impl TomlValue {
     /// A number in SI that a program sets.
     pub(crate) const fn from_code(value: f64, half_digit: f64) -> Self {
         let from_code = true;
-        Self::Number(Number { value, half_digit, from_code })
+        Self::Number(TomlNumber { value, half_digit, from_code })
     }
 
     /// A number as the file writes it.
     pub(crate) const fn number(value: f64, half_digit: f64) -> Self {
         let from_code = false;
-        Self::Number(Number { value, half_digit, from_code })
+        Self::Number(TomlNumber { value, half_digit, from_code })
     }
 }
 
@@ -63,23 +63,23 @@ impl Node {
     /// The kind of value in messages.
     pub(crate) const fn kind(&self) -> &'static str {
         match &self.value {
-            Value::Text(_) => "text",
-            Value::Number(_) => "a plain number",
-            Value::Flag(_) => "true or false",
-            Value::List(_) => "a list",
-            Value::Table(_) => "a table",
-            Value::Date => "a date or time",
+            TomlValue::Text(_) => "text",
+            TomlValue::Number(_) => "a plain number",
+            TomlValue::Flag(_) => "true or false",
+            TomlValue::List(_) => "a list",
+            TomlValue::Table(_) => "a table",
+            TomlValue::Date => "a date or time",
         }
     }
 
     pub(crate) const fn is_table(&self) -> bool {
-        matches!(self.value, Value::Table(_))
+        matches!(self.value, TomlValue::Table(_))
     }
 
     /// The entries of a table; none of anything else.
     pub(crate) fn entries(&self) -> &[TableEntry] {
         match &self.value {
-            Value::Table(entries) => entries,
+            TomlValue::Table(entries) => entries,
             _ => &[],
         }
     }
@@ -87,7 +87,7 @@ impl Node {
     /// The members of a list; none of anything else.
     pub(crate) fn members(&self) -> &[Self] {
         match &self.value {
-            Value::List(members) => members,
+            TomlValue::List(members) => members,
             _ => &[],
         }
     }
@@ -105,7 +105,7 @@ impl Node {
 
     pub(crate) fn text(&self) -> Option<&str> {
         match &self.value {
-            Value::Text(text) => Some(text),
+            TomlValue::Text(text) => Some(text),
             _ => None,
         }
     }
@@ -114,22 +114,22 @@ impl Node {
     /// law given by its name alone keeps the name as its `law`.
     pub(crate) fn entry_mut(&mut self, key: &str) -> &mut Self {
         let span = self.span.clone();
-        let entry = |key: &str, value: Value| TableEntry {
+        let entry = |key: &str, value: TomlValue| TableEntry {
             key: key.to_owned(),
             key_span: span.clone(),
             node: Self { value, span: span.clone() },
         };
         if !self.is_table() {
-            let law = self.text().map(|law| entry("law", Value::Text(law.to_owned())));
-            self.value = Value::Table(law.into_iter().collect());
+            let law = self.text().map(|law| entry("law", TomlValue::Text(law.to_owned())));
+            self.value = TomlValue::Table(law.into_iter().collect());
         }
-        let Value::Table(entries) = &mut self.value else {
+        let TomlValue::Table(entries) = &mut self.value else {
             unreachable!("the value has just been made a table");
         };
         let at = entries.iter().position(|entry| entry.key == key);
         let at = at.unwrap_or(entries.len());
         if at == entries.len() {
-            entries.push(entry(key, Value::Table(Vec::new())));
+            entries.push(entry(key, TomlValue::Table(Vec::new())));
         }
         &mut entries[at].node
     }
@@ -138,7 +138,7 @@ impl Node {
 /// Parses a text; every slip of the pen is one problem.
 pub(crate) fn parse(text: &str) -> Result<Node, Vec<FileProblem>> {
     let (table, errors) = DeTable::parse_recoverable(text);
-    let root = Node { value: Value::Table(entries(table.get_ref())), span: table.span() };
+    let root = Node { value: TomlValue::Table(entries(table.get_ref())), span: table.span() };
     match errors.is_empty() {
         true => Ok(root),
         false => Err(problems(&errors, text)),
@@ -159,25 +159,25 @@ fn entries(table: &DeTable<'_>) -> Vec<TableEntry> {
 
 fn node(value: &Spanned<DeValue<'_>>) -> Node {
     let converted = match value.get_ref() {
-        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::String(text) => TomlValue::Text(text.to_string()),
         DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
-            Ok(whole) => Value::number(whole as f64, 0.5),
+            Ok(whole) => TomlValue::number(whole as f64, 0.5),
             Err(_) => float(integer.as_str()),
         },
         DeValue::Float(text) => float(text.as_str()),
-        DeValue::Boolean(flag) => Value::Flag(*flag),
-        DeValue::Array(members) => Value::List(members.iter().map(node).collect()),
-        DeValue::Table(table) => Value::Table(entries(table)),
-        DeValue::Datetime(_) => Value::Date,
+        DeValue::Boolean(flag) => TomlValue::Flag(*flag),
+        DeValue::Array(members) => TomlValue::List(members.iter().map(node).collect()),
+        DeValue::Table(table) => TomlValue::Table(entries(table)),
+        DeValue::Datetime(_) => TomlValue::Date,
     };
     Node { value: converted, span: value.span() }
 }
 
 /// A float as written; what is not a finite decimal becomes NaN or an
 /// infinity, which every key refuses.
-fn float(text: &str) -> Value {
+fn float(text: &str) -> TomlValue {
     let half_digit = units::parse_quantity(text).map_or(f64::NAN, |q| q.half_digit);
-    Value::number(text.parse().unwrap_or(f64::NAN), half_digit)
+    TomlValue::number(text.parse().unwrap_or(f64::NAN), half_digit)
 }
 
 /// Reads the text of a file; what is none is an error that says what it is instead.
@@ -391,7 +391,7 @@ fn duplicate(place: &Range<usize>, text: &str) -> FileProblem {
     let key = &text[place.clone()];
     let is_header = whole.starts_with('[');
     let (what, help) = match (is_header, ROOT.key(key).map(|key| &key.kind)) {
-        (true, Some(Kind::Tables(_))) => (whole, format!("write [[{key}]] to add one more")),
+        (true, Some(KeyKind::Tables(_))) => (whole, format!("write [[{key}]] to add one more")),
         (true, _) => (whole, "put all its keys into one table".to_owned()),
         (false, _) => (key, "keep one of the two".to_owned()),
     };

@@ -3,15 +3,15 @@
 use crate::assemble;
 use crate::check::check;
 use crate::contacts::SectionSpec;
-use crate::document::{self, Node, Number, Value};
+use crate::document::{self, Node, TomlNumber, TomlValue};
 use crate::keys::ROOT;
 use crate::reading::{Pick, Reading};
-use crate::report::{FileProblem, Mistakes, Source, Warning, nearest_word};
+use crate::report::{FileProblem, Mistakes, Source, UnknownName, Warning};
 use crate::rig::{Campaign, Rig};
 use crate::settings::{Liquid, Solver};
 use crate::spec::Spec;
 use crate::validity;
-use crate::values::{Units, View};
+use crate::values::{TableView, Units};
 use hertzchain_chain::wave::SolveError;
 use hertzchain_chain::{Chain, Sensor, System};
 use miette::NamedSource;
@@ -91,7 +91,7 @@ impl Experiment {
         };
         check(&tree, units).map_err(|problems| Mistakes::new(problems, &source))?;
         let (node, fields) = (&tree, &ROOT);
-        let written = Spec::read(&View { node, fields, units }, &folder).map_err(refused)?;
+        let written = Spec::read(&TableView { node, fields, units }, &folder).map_err(refused)?;
         let reading = *reading.unwrap_or(&written.reading);
         let spec = written.clone();
         let experiment = Self { source, folder, tree, written, spec };
@@ -378,19 +378,19 @@ impl Experiment {
     }
 }
 
-fn append_canonical(value: &Value, text: &mut String) {
+fn append_canonical(value: &TomlValue, text: &mut String) {
     // A text takes whatever is written into it.
     let _ = match value {
-        Value::Text(words) => writeln!(text, "{words:?}"),
-        Value::Number(Number { value, .. }) => writeln!(text, "{:016x}", value.to_bits()),
-        Value::Flag(flag) => writeln!(text, "{flag}"),
-        Value::Date => writeln!(text, "a date or time"),
-        Value::List(items) => {
+        TomlValue::Text(words) => writeln!(text, "{words:?}"),
+        TomlValue::Number(TomlNumber { value, .. }) => writeln!(text, "{:016x}", value.to_bits()),
+        TomlValue::Flag(flag) => writeln!(text, "{flag}"),
+        TomlValue::Date => writeln!(text, "a date or time"),
+        TomlValue::List(items) => {
             text.push_str("[\n");
             items.iter().for_each(|item| append_canonical(&item.value, text));
             writeln!(text, "]")
         }
-        Value::Table(entries) => {
+        TomlValue::Table(entries) => {
             text.push_str("{\n");
             for entry in entries {
                 text.push_str(&format!("{:?}=\n", entry.key));
@@ -416,22 +416,6 @@ impl Preset {
         let line = self.text.lines().find(|line| line.starts_with("title"));
         line.and_then(|line| line.split('"').nth(1)).unwrap_or(self.name)
     }
-}
-
-/// A name that is neither a preset nor an example nor a campaign.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no preset `{name}`; expected one of: {}{}", .known.join(", "), hint(.nearest))]
-pub struct UnknownPreset {
-    /// The name.
-    pub name: String,
-    /// The name probably meant.
-    pub nearest: Option<&'static str>,
-    /// All names.
-    pub known: Vec<&'static str>,
-}
-
-fn hint(nearest: &Option<&'static str>) -> String {
-    nearest.map_or(String::new(), |name| format!("; did you mean `{name}`?"))
 }
 
 macro_rules! files {
@@ -477,15 +461,13 @@ pub const fn campaigns() -> &'static [Preset] {
 ///
 /// # Errors
 /// An unknown name, with those that exist and the nearest of them.
-pub fn preset(name: &str) -> Result<Experiment, UnknownPreset> {
+pub fn preset(name: &str) -> Result<Experiment, UnknownName> {
     let all = || PRESETS.iter().chain(EXAMPLES).chain(CAMPAIGNS);
     let found = all().find(|preset| preset.name == name);
     let open = |p: &Preset| Experiment::from_text(&format!("{}.toml", p.name), p.text).ok();
     let experiment = found.and_then(open);
-    experiment.ok_or_else(|| UnknownPreset {
-        name: name.to_owned(),
-        nearest: nearest_word(name, all().map(|preset| preset.name)),
-        known: all().map(|preset| preset.name).collect(),
+    experiment.ok_or_else(|| {
+        UnknownName::new(format!("preset `{name}`"), name, all().map(|p| p.name).collect())
     })
 }
 

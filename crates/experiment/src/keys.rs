@@ -6,7 +6,7 @@ use crate::report::nearest_word;
 use crate::rig::{Actuator, Amplifier, Laying, Photogate, RIG, Recorder};
 use crate::settings::{Liquid, Method};
 use crate::values::Units;
-pub(crate) use Kind::{
+pub(crate) use KeyKind::{
     Choice, Count, Counts, Flag, Laws, Named, Quantities, Quantity, Scaled, Table, Tables, Text,
     Variants as OneOf,
 };
@@ -23,7 +23,7 @@ pub(crate) struct Fields {
 #[derive(Debug)]
 pub(crate) struct Key {
     pub(crate) name: &'static str,
-    pub(crate) kind: Kind,
+    pub(crate) kind: KeyKind,
     pub(crate) need: Need,
     /// Its meaning, in a few words.
     pub(crate) about: &'static str,
@@ -40,7 +40,7 @@ pub(crate) enum Need {
 
 /// The kind of value that a key has.
 #[derive(Debug)]
-pub(crate) enum Kind {
+pub(crate) enum KeyKind {
     /// A quantity in this SI unit; "1" for a plain number.
     Quantity(&'static str, ValueLimits),
     /// A quantity, or a power law of the striker's speed.
@@ -182,19 +182,19 @@ const ACCURACY: ValueLimits = ValueLimits::closed(1e-13, 1e-2, "between 1e-13 an
 const INCLINE: ValueLimits = ValueLimits::closed(0.0, FRAC_PI_2, "between 0 and 90 deg");
 const FRICTION: ValueLimits = ValueLimits::closed(0.0, 10.0, "from 0 to 10");
 const RATIO: ValueLimits = ValueLimits::open(0.0, 100.0, false, "positive and below 100");
-const DISPLACEMENT: Kind =
+const DISPLACEMENT: KeyKind =
     Quantity("m", ValueLimits::closed(-1e6, 1e6, "from -1000 km to 1000 km"));
 /// Up to the Earth's mantle and beyond.
-const VISCOSITY: Kind = Scaled("Pa s", ValueLimits::closed(0.0, 1e24, "from 0 to 1e24 Pa s"));
+const VISCOSITY: KeyKind = Scaled("Pa s", ValueLimits::closed(0.0, 1e24, "from 0 to 1e24 Pa s"));
 /// Of radii over their mean.
-pub(crate) const SPREAD: Kind = Quantity("1", ValueLimits::closed(0.0, 0.1, "from 0 to 0.1"));
-pub(crate) const VOLTAGE: Kind = Quantity("V", ValueLimits::ANY);
+pub(crate) const SPREAD: KeyKind = Quantity("1", ValueLimits::closed(0.0, 0.1, "from 0 to 0.1"));
+pub(crate) const VOLTAGE: KeyKind = Quantity("V", ValueLimits::ANY);
 
 /// Longest chain: what fits into memory with all that a shot needs.
 pub(crate) const MOST_BEADS: i64 = 2_000_000;
 
 /// A positive quantity within the range of its unit.
-pub(crate) const fn positive(unit: &'static str) -> Kind {
+pub(crate) const fn positive(unit: &'static str) -> KeyKind {
     let limits = match unit.as_bytes() {
         b"m" => LENGTH,
         b"kg" => MASS,
@@ -207,12 +207,12 @@ pub(crate) const fn positive(unit: &'static str) -> Kind {
     Quantity(unit, limits)
 }
 
-pub(crate) const fn not_negative(unit: &'static str) -> Kind {
+pub(crate) const fn not_negative(unit: &'static str) -> KeyKind {
     Quantity(unit, ValueLimits::NOT_NEGATIVE)
 }
 
 /// A whole number of things that a chain has.
-pub(crate) const fn from(least: i64) -> Kind {
+pub(crate) const fn from(least: i64) -> KeyKind {
     let most = MOST_BEADS;
     Count { least, most }
 }
@@ -418,7 +418,9 @@ static SUSPENSION: Fields = table! { "[suspension]";
 };
 
 static GAP: Fields = table! { "[[gaps]]";
-    contact(Always): from(0), "contact";
+    contact: from(0), "contact";
+    from: from(0), "first of several contacts; default the first";
+    to: from(0), "last of them; default the last";
     gap(Always): Quantity("m", GAP_WIDTH), "gap before the shot";
 };
 
@@ -450,7 +452,7 @@ static CASE: Fields = table! { "[[campaign.cases]]";
     liquid: Table(&Liquid::FIELDS), "liquid in place of the file's own, for reports";
 };
 
-const SEED: Kind = Count { least: 0, most: 1 << 52 };
+const SEED: KeyKind = Count { least: 0, most: 1 << 52 };
 
 static CAMPAIGN: Fields = table! { "[campaign]";
     seed: SEED, "seed of all that is random; default 1";
@@ -494,7 +496,7 @@ pub(crate) static ROOT: Fields = table! { "an experiment file";
 
 /// Where a key belongs that stands in the wrong table, in words.
 pub(crate) fn home(key: &str) -> Option<String> {
-    let tables_of = |kind: &'static Kind| -> Vec<(&str, &Fields)> {
+    let tables_of = |kind: &'static KeyKind| -> Vec<(&str, &Fields)> {
         match kind {
             Table(fields) | Tables(fields) | Named(fields) => vec![(fields.title, fields)],
             OneOf(variants) => {

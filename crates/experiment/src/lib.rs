@@ -62,12 +62,10 @@ pub mod units;
 
 pub use assemble::Reference;
 pub use contacts::{LawSpec, SectionSpec};
-pub use experiment::{
-    Experiment, OpenError, Preset, UnknownPreset, campaigns, examples, preset, presets,
-};
-pub use paths::{Named, PathError, Place};
-pub use reading::{Pick, Reading, Switch, SwitchError};
-pub use report::{Finding, Mistakes, Warning};
+pub use experiment::{Experiment, OpenError, Preset, campaigns, examples, preset, presets};
+pub use paths::{NamedNumber, PathError};
+pub use reading::{Pick, Reading, Switch};
+pub use report::{Finding, Mistakes, UnknownName, Warning};
 pub use rig::{
     Actuator, Amplifier, Campaign, Channels, Laying, LowPass, LowPassFactor, LowPassKind,
     Photogate, Recorder, Rig, RigPart, RigPartKind, Trigger,

@@ -6,39 +6,26 @@
 //! only one number is enough: `young_modulus`, `damping_cubic.coefficient`.
 
 use crate::contacts::{self, CONTACT};
-use crate::document::{Node, Value};
+use crate::document::{Node, TomlValue};
 use crate::experiment::Experiment;
-use crate::keys::{Fields, Key, Kind, ROOT, ValueLimits};
+use crate::keys::{Fields, Key, KeyKind, ROOT, ValueLimits};
 use crate::reading::{PreloadReading, Reading};
 use crate::report::{Mistakes, nearest_word};
 use crate::rig::RIG;
 use crate::values::{ExpectedQuantity, POWER_LAW, Si, Units};
 
-/// One number of an experiment, in SI.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Named {
-    /// Full path.
-    pub path: String,
-    /// Value in SI.
-    pub value: f64,
-    /// SI unit; "1" for a plain number.
-    pub unit: String,
-    /// Half a unit of the last digit written, in SI: what rounding for print
-    /// may hide. 0 for values set by a program.
-    pub half_digit: f64,
-    /// Whether it counts something and must stay whole.
-    pub is_count: bool,
-}
-
 /// A place for a number, whether or not the file gives one there.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct NamedNumber {
     /// Full path.
     pub path: String,
     /// Value in SI, where the file gives one.
     pub value: Option<f64>,
     /// SI unit; "1" for a plain number.
     pub unit: String,
+    /// Half a unit of the last digit written, in SI: what rounding for print
+    /// may hide. 0 for values set by a program.
+    pub half_digit: f64,
     /// Whether it counts something and must stay whole.
     pub is_count: bool,
 }
@@ -79,17 +66,12 @@ fn hint(nearest: Option<&str>) -> String {
 
 impl Experiment {
     /// Every number that the file gives, in its order.
-    pub fn numbers(&self) -> Vec<Named> {
-        let given = |slot: Slot<'_>| {
-            let Si { value, half_digit } = slot.value(self.units())?;
-            let Slot { path, unit, is_count, .. } = slot;
-            Some(Named { path, value, unit, half_digit, is_count })
-        };
-        self.slots().into_iter().filter_map(given).collect()
+    pub fn numbers(&self) -> Vec<NamedNumber> {
+        self.places().into_iter().filter(|number| number.value.is_some()).collect()
     }
 
     /// Every place where a number stands or could stand, in the file's order.
-    pub fn places(&self) -> Vec<Place> {
+    pub fn places(&self) -> Vec<NamedNumber> {
         let place = |slot: Slot<'_>| slot.place(self.units());
         self.slots().into_iter().map(place).collect()
     }
@@ -98,7 +80,7 @@ impl Experiment {
     ///
     /// # Errors
     /// An unknown or ambiguous path.
-    pub fn place(&self, path: &str) -> Result<Place, PathError> {
+    pub fn place(&self, path: &str) -> Result<NamedNumber, PathError> {
         let slots = self.slots();
         Ok(find(&slots, path)?.clone().place(self.units()))
     }
@@ -108,7 +90,7 @@ impl Experiment {
     ///
     /// # Errors
     /// An unknown or ambiguous path.
-    pub fn followers(&self, path: &str) -> Result<Vec<Place>, PathError> {
+    pub fn followers(&self, path: &str) -> Result<Vec<NamedNumber>, PathError> {
         let slots = self.slots();
         let steering = find(&slots, path)?;
         let followers = slots.iter().filter(|slot| slot.follows(steering));
@@ -147,7 +129,7 @@ impl Experiment {
     /// An unknown or ambiguous path, or a value that does not fit.
     pub fn set(&self, values: &[(&str, f64)]) -> Result<Self, PathError> {
         let values = values.iter();
-        self.replaced(values.map(|(path, value)| (*path, Value::from_code(*value, 0.0))))
+        self.replaced(values.map(|(path, value)| (*path, TomlValue::from_code(*value, 0.0))))
     }
 
     /// This experiment with named numbers set from text as it would stand in
@@ -157,8 +139,8 @@ impl Experiment {
     /// An unknown or ambiguous path, or a value that does not fit.
     pub fn set_text(&self, values: &[(&str, &str)]) -> Result<Self, PathError> {
         let value = |text: &str| match text.trim().parse() {
-            Ok(value) => Value::number(value, 0.0),
-            Err(_) => Value::Text(text.to_owned()),
+            Ok(value) => TomlValue::number(value, 0.0),
+            Err(_) => TomlValue::Text(text.to_owned()),
         };
         self.replaced(values.iter().map(|(path, text)| (*path, value(text))))
     }
@@ -185,9 +167,9 @@ impl Experiment {
     pub fn with_push(&self, force_n: f64) -> Result<Self, PathError> {
         let mut tree = self.tree().clone();
         let near_end = tree.entry_mut("near_end");
-        near_end.value = Value::Table(Vec::new());
-        near_end.entry_mut("push").value = Value::Text("constant".to_owned());
-        near_end.entry_mut("force").value = Value::from_code(force_n, 0.0);
+        near_end.value = TomlValue::Table(Vec::new());
+        near_end.entry_mut("push").value = TomlValue::Text("constant".to_owned());
+        near_end.entry_mut("force").value = TomlValue::from_code(force_n, 0.0);
         let preload = PreloadReading::None;
         let own = Reading { preload, ..self.reading() };
         Ok(self.with_tree(tree)?.with_reading(&own)?)
@@ -204,8 +186,8 @@ impl Experiment {
         order: Option<&str>,
         kind: Option<&str>,
     ) -> Result<Self, PathError> {
-        let text = |name: Option<&str>| name.map(|name| Value::Text(name.to_owned()));
-        let corner = corner_hz.map(|corner_hz| Value::from_code(corner_hz, 0.0));
+        let text = |name: Option<&str>| name.map(|name| TomlValue::Text(name.to_owned()));
+        let corner = corner_hz.map(|corner_hz| TomlValue::from_code(corner_hz, 0.0));
         let mut tree = self.tree().clone();
         let amplifier = tree.entry_mut("campaign").entry_mut("amplifier");
         let values = [("low_pass", corner), ("order", text(order)), ("kind", text(kind))];
@@ -226,19 +208,19 @@ impl Experiment {
 
     fn replaced<'a>(
         &self,
-        values: impl Iterator<Item = (&'a str, Value)>,
+        values: impl Iterator<Item = (&'a str, TomlValue)>,
     ) -> Result<Self, PathError> {
         let slots = self.slots();
         let mut tree = self.tree().clone();
         let found = values.map(|(path, value)| Ok((find(&slots, path)?, value)));
-        let found: Vec<(&Slot<'_>, Value)> = found.collect::<Result<_, PathError>>()?;
+        let found: Vec<(&Slot<'_>, TomlValue)> = found.collect::<Result<_, PathError>>()?;
         // Before a number is changed on which units of its law depend, as N/m^n does on
         // n: what the file gives in them was checked against the file's own number, and
         // is kept as a plain number in SI, in the unit that is to be.
         for (changed, _) in &found {
             for follower in slots.iter().filter(|slot| slot.follows(changed)) {
                 if let Some(si) = follower.value(self.units()) {
-                    let value = Value::from_code(si.value, si.half_digit);
+                    let value = TomlValue::from_code(si.value, si.half_digit);
                     node_at(&mut tree, &follower.steps).value = value;
                 }
             }
@@ -248,7 +230,7 @@ impl Experiment {
             let contact = slot.is_derived.then(|| self.reference(&slot.path)?.contact);
             if let (Some(contact), [table @ .., _]) = (contact.flatten(), &slot.steps[..]) {
                 let law = node_at(&mut tree, table);
-                law.entry_mut(CONTACT).value = Value::from_code(contact as f64, 0.0);
+                law.entry_mut(CONTACT).value = TomlValue::from_code(contact as f64, 0.0);
             }
         }
         Ok(self.with_tree(tree)?)
@@ -260,7 +242,7 @@ fn node_at<'a>(node: &'a mut Node, steps: &[PathStep]) -> &'a mut Node {
     steps.iter().fold(node, |node, step| match step {
         PathStep::Key(key) => node.entry_mut(key),
         PathStep::Index(at) => match &mut node.value {
-            Value::List(members) => &mut members[*at],
+            TomlValue::List(members) => &mut members[*at],
             // A step to a member was found in a list.
             _ => unreachable!("only lists have members"),
         },
@@ -326,11 +308,13 @@ impl Slot<'_> {
         law == same && self.form.contains(&format!("{{{name}}}"))
     }
 
-    fn place(&self, units: Units) -> Place {
-        Place {
-            value: self.value(units).map(|si| si.value),
-            unit: self.unit.clone(),
+    fn place(&self, units: Units) -> NamedNumber {
+        let si = self.value(units);
+        NamedNumber {
             path: self.path.clone(),
+            value: si.map(|si| si.value),
+            unit: self.unit.clone(),
+            half_digit: si.map_or(0.0, |si| si.half_digit),
             is_count: self.is_count,
         }
     }
@@ -404,35 +388,35 @@ impl<'a> SlotWalk<'a> {
 
     fn value(&mut self, key: &'static Key, node: Option<&'a Node>, way: &SlotPath) {
         match (&key.kind, node) {
-            (Kind::Scaled(unit, _), Some(law)) if law.is_table() => {
+            (KeyKind::Scaled(unit, _), Some(law)) if law.is_table() => {
                 for (part, unit) in POWER_LAW.into_iter().zip([*unit, "1"]) {
                     self.push(unit, law.get(part), way.key(part));
                 }
             }
-            (Kind::Quantity(unit, _) | Kind::Scaled(unit, _), _) => {
+            (KeyKind::Quantity(unit, _) | KeyKind::Scaled(unit, _), _) => {
                 self.push(unit, node, way.clone());
             }
-            (Kind::Count { .. }, _) => self.push("1", node, way.clone()).is_count = true,
+            (KeyKind::Count { .. }, _) => self.push("1", node, way.clone()).is_count = true,
             // Numbers of the rig are described only: nothing depends on them.
-            (Kind::Table(fields), _) if std::ptr::eq(*fields, &RIG) => {}
-            (Kind::Table(fields), _) => self.table(node, fields, way),
-            (Kind::Tables(fields), Some(list)) => {
+            (KeyKind::Table(fields), _) if std::ptr::eq(*fields, &RIG) => {}
+            (KeyKind::Table(fields), _) => self.table(node, fields, way),
+            (KeyKind::Tables(fields), Some(list)) => {
                 for (index, member) in list.members().iter().enumerate() {
                     self.table(Some(member), fields, &way.index(index));
                 }
             }
-            (Kind::Named(fields), Some(table)) => {
+            (KeyKind::Named(fields), Some(table)) => {
                 for entry in table.entries() {
                     self.table(Some(&entry.node), fields, &way.key(&entry.key));
                 }
             }
-            (Kind::Variants(variants), Some(table)) => {
+            (KeyKind::Variants(variants), Some(table)) => {
                 let tag = table.get(variants.tag).and_then(Node::text);
                 if let Some(fields) = tag.and_then(|tag| variants.fields(tag)) {
                     self.table(Some(table), fields, way);
                 }
             }
-            (Kind::Laws, Some(list)) => {
+            (KeyKind::Laws, Some(list)) => {
                 for (index, member) in list.members().iter().enumerate() {
                     self.law(member, way, index);
                 }

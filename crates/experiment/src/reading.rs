@@ -5,10 +5,10 @@
 
 use crate::contacts::SectionSpec;
 use crate::keys::{Choice, Fields, choice, table};
-use crate::report::nearest_word;
+use crate::report::UnknownName;
 use crate::settings::Far;
 use crate::spec::Spec;
-use crate::values::View;
+use crate::values::TableView;
 use hertzchain_chain::laws::find;
 use hertzchain_chain::{Push, Tension};
 
@@ -21,23 +21,6 @@ pub struct Switch {
     pub about: &'static str,
     /// Its options as written in a file.
     pub options: &'static [&'static str],
-}
-
-/// A switch or an option that does not exist.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no {what}; expected one of: {}{hint}", .known.join(", "))]
-pub struct SwitchError {
-    what: String,
-    known: Vec<&'static str>,
-    hint: String,
-}
-
-impl SwitchError {
-    fn new(what: String, given: &str, known: Vec<&'static str>) -> Self {
-        let near = nearest_word(given, known.iter().copied());
-        let hint = near.map_or(String::new(), |word| format!("; did you mean `{word}`?"));
-        Self { what, known, hint }
-    }
 }
 
 /// Declares all switches: the enums, the struct, the keys and their names.
@@ -77,15 +60,15 @@ macro_rules! switches {
             ///
             /// # Errors
             /// An unknown switch or option, with those that exist.
-            pub fn with(mut self, switch: &str, option: &str) -> Result<Self, SwitchError> {
+            pub fn with(mut self, switch: &str, option: &str) -> Result<Self, UnknownName> {
                 match switch {
                     $(stringify!($field) => self.$field = $Type::from_name(option).ok_or_else(|| {
                         let what = format!("option `{option}` of the switch `{switch}`");
-                        SwitchError::new(what, option, $Type::NAMES.to_vec())
+                        UnknownName::new(what, option, $Type::NAMES.to_vec())
                     })?,)+
                     _ => {
                         let names = SWITCHES.iter().map(|s| s.name).collect();
-                        return Err(SwitchError::new(format!("switch `{switch}`"), switch, names));
+                        return Err(UnknownName::new(format!("switch `{switch}`"), switch, names));
                     }
                 }
                 Ok(self)
@@ -205,7 +188,7 @@ impl Reading {
     }
 
     /// The reading of a checked file.
-    pub(crate) fn read(root: &View<'_>) -> Self {
+    pub(crate) fn read(root: &TableView<'_>) -> Self {
         let table = root.table("reading");
         let option = |switch: &Switch| Some((switch.name, table?.text(switch.name)?));
         let given = SWITCHES.iter().filter_map(option);

@@ -187,6 +187,23 @@ impl fmt::Display for Mistakes {
 
 impl std::error::Error for Mistakes {}
 
+/// A preset, a switch or an option that does not exist.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no {what}; expected one of: {}{hint}", .known.join(", "))]
+pub struct UnknownName {
+    what: String,
+    known: Vec<&'static str>,
+    hint: String,
+}
+
+impl UnknownName {
+    pub(crate) fn new(what: String, given: &str, known: Vec<&'static str>) -> Self {
+        let near = nearest_word(given, known.iter().copied());
+        let hint = near.map_or(String::new(), |word| format!("; did you mean `{word}`?"));
+        Self { what, known, hint }
+    }
+}
+
 /// The word nearest to `text`, if near enough to be a slip: one in three letters, begun ones
 /// counted; case makes no distance.
 pub(crate) fn nearest_word<'a>(

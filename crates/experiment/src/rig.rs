@@ -9,7 +9,7 @@ use crate::keys::{
 };
 use crate::report::{FileProblem, to_digits};
 use crate::settings::Liquid;
-use crate::values::{FromKey, View, record};
+use crate::values::{FromKey, TableView, record};
 use std::f64::consts::SQRT_2;
 
 /// Everything that a rig does: series at several speeds, each for every case.
@@ -139,7 +139,7 @@ pub enum Trigger {
 }
 
 impl FromKey for Trigger {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
+    fn from_key(table: &TableView<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         const LEVEL_V: f64 = 0.02;
         let level_v = table.quantity("level")?.unwrap_or(LEVEL_V);
         let level = table.text(key) == Some("level");
@@ -150,7 +150,7 @@ impl FromKey for Trigger {
 macro_rules! choice_keys {
     ($($Type:ident)+) => {
         $(impl FromKey for $Type {
-            fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
+            fn from_key(table: &TableView<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
                 Ok(table.text(key).and_then(Self::from_name))
             }
         })+
@@ -159,7 +159,7 @@ macro_rules! choice_keys {
 choice_keys! { LowPass LowPassKind Channels }
 
 impl FromKey for u32 {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
+    fn from_key(table: &TableView<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         Ok(table.count(key)?.and_then(|bits| Self::try_from(bits).ok()))
     }
 }
@@ -243,7 +243,7 @@ impl Recorder {
         (self.record_s * self.sampling_hz).round() as usize
     }
 
-    fn check(&self, table: &View<'_>) -> Result<(), FileProblem> {
+    fn check(&self, table: &TableView<'_>) -> Result<(), FileProblem> {
         /// A quarter of a minute at 1 MHz.
         const MOST_SAMPLES: f64 = 1.6e7;
         let samples = (self.record_s * self.sampling_hz).round();
@@ -280,7 +280,10 @@ impl Recorder {
 impl Campaign {
     /// The campaign of a file; without the table the paper's numbers and the
     /// striker's own speed.
-    pub(crate) fn read(root: &View<'_>, striker_m_s: Option<f64>) -> Result<Self, FileProblem> {
+    pub(crate) fn read(
+        root: &TableView<'_>,
+        striker_m_s: Option<f64>,
+    ) -> Result<Self, FileProblem> {
         let table = root.table("campaign");
         let count = |key| table.map_or(Ok(None), |t| t.count(key));
         let part = |key| table.and_then(|t| t.table(key));
@@ -317,7 +320,7 @@ impl Campaign {
 }
 
 /// The speeds as a list, or in equal ratios from the slowest to the fastest; none without both.
-fn speeds(table: &View<'_>) -> Result<Vec<f64>, FileProblem> {
+fn speeds(table: &TableView<'_>) -> Result<Vec<f64>, FileProblem> {
     let listed = table.quantities("speeds")?;
     let ends = (table.quantity("slowest")?, table.quantity("fastest")?);
     let count = table.count("speed_count")?;
@@ -346,7 +349,7 @@ fn speeds(table: &View<'_>) -> Result<Vec<f64>, FileProblem> {
 
 /// The cases of a campaign, in the file's order.
 pub(crate) fn cases(
-    root: &View<'_>,
+    root: &TableView<'_>,
     materials: &Materials,
     groups: &[BeadGroup],
 ) -> Result<Vec<CaseSpec>, FileProblem> {
@@ -405,21 +408,21 @@ pub struct RigPart {
 
 /// Declares the parts of `[rig]`, from the launcher to the far end, with their keys.
 macro_rules! parts {
-    ($($Kind:ident $key:ident $about:literal { $($name:ident: $own:expr, $own_about:literal;)* })+) => {
+    ($($KeyKind:ident $key:ident $about:literal { $($name:ident: $own:expr, $own_about:literal;)* })+) => {
         /// The purpose of a part.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum RigPartKind {
-            $(#[doc = concat!("Part: ", $about, ".")] $Kind,)+
+            $(#[doc = concat!("Part: ", $about, ".")] $KeyKind,)+
         }
 
         impl RigPartKind {
             /// Every kind, from the launcher to the far end.
-            pub const ALL: [Self; [$($about),+].len()] = [$(Self::$Kind),+];
+            pub const ALL: [Self; [$($about),+].len()] = [$(Self::$KeyKind),+];
 
             /// Its key in `[rig]`.
             pub const fn key(self) -> &'static str {
                 match self {
-                    $(Self::$Kind => stringify!($key),)+
+                    $(Self::$KeyKind => stringify!($key),)+
                 }
             }
         }
@@ -453,7 +456,7 @@ impl Rig {
         self.parts.iter().find(|part| part.kind == kind)
     }
 
-    pub(crate) fn read(root: &View<'_>) -> Result<Option<Self>, FileProblem> {
+    pub(crate) fn read(root: &TableView<'_>) -> Result<Option<Self>, FileProblem> {
         let Some(table) = root.table("rig") else {
             return Ok(None);
         };

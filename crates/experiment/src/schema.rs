@@ -2,7 +2,7 @@
 //! registry of contact laws, for editors.
 
 use crate::contacts::{CONTACT, is_derived};
-use crate::keys::{Fields, Key, Kind, Need, ROOT, ValueLimits, Variants};
+use crate::keys::{Fields, Key, KeyKind, Need, ROOT, ValueLimits, Variants};
 use crate::units;
 use crate::values::Units;
 use hertzchain_chain::laws::{LAWS, Parameter, Row, Source};
@@ -48,10 +48,10 @@ fn table(fields: &Fields, tag: Option<(&str, &str)>, units: Units) -> Value {
 fn property(key: &Key, units: Units) -> Value {
     let mut schema = kind(&key.kind, units);
     let unit = match &key.kind {
-        Kind::Quantity(unit, limits) | Kind::Scaled(unit, limits) if *unit != "1" => {
+        KeyKind::Quantity(unit, limits) | KeyKind::Scaled(unit, limits) if *unit != "1" => {
             format!(", in {unit}, {}", limits.words)
         }
-        Kind::Quantity(_, limits) | Kind::Scaled(_, limits) => format!(", {}", limits.words),
+        KeyKind::Quantity(_, limits) | KeyKind::Scaled(_, limits) => format!(", {}", limits.words),
         _ => String::new(),
     };
     if let Some(object) = schema.as_object_mut() {
@@ -60,29 +60,29 @@ fn property(key: &Key, units: Units) -> Value {
     schema
 }
 
-fn kind(kind: &Kind, units: Units) -> Value {
+fn kind(kind: &KeyKind, units: Units) -> Value {
     match kind {
-        Kind::Quantity(unit, limits) => quantity(unit, limits, units),
-        Kind::Scaled(unit, limits) => {
+        KeyKind::Quantity(unit, limits) => quantity(unit, limits, units),
+        KeyKind::Scaled(unit, limits) => {
             json!({ "anyOf": [quantity(unit, limits, units), power_law(unit, units)] })
         }
-        Kind::Quantities(unit) => list(quantity(unit, &ValueLimits::ANY, units)),
-        Kind::Count { least, most } => json!({
+        KeyKind::Quantities(unit) => list(quantity(unit, &ValueLimits::ANY, units)),
+        KeyKind::Count { least, most } => json!({
             "type": "integer", "minimum": least, "maximum": most,
         }),
-        Kind::Counts => json!({
+        KeyKind::Counts => json!({
             "type": "array", "items": { "type": "integer", "minimum": 0 },
         }),
-        Kind::Choice(options) => json!({ "enum": options }),
-        Kind::Text => json!({ "type": "string" }),
-        Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Table(fields) => table(fields, None, units),
-        Kind::Tables(fields) => list(table(fields, None, units)),
-        Kind::Named(fields) => json!({
+        KeyKind::Choice(options) => json!({ "enum": options }),
+        KeyKind::Text => json!({ "type": "string" }),
+        KeyKind::Flag => json!({ "type": "boolean" }),
+        KeyKind::Table(fields) => table(fields, None, units),
+        KeyKind::Tables(fields) => list(table(fields, None, units)),
+        KeyKind::Named(fields) => json!({
             "type": "object", "additionalProperties": table(fields, None, units),
         }),
-        Kind::Variants(variants) => one_of(variants, units),
-        Kind::Laws => list(law(units)),
+        KeyKind::Variants(variants) => one_of(variants, units),
+        KeyKind::Laws => list(law(units)),
     }
 }
 

@@ -1,9 +1,9 @@
 //! The ends of the chain, deviations from rest, sensors, solver and liquid of a file.
 
 use crate::bodies::Materials;
-use crate::keys::{SPEED, Text, choice, positive};
+use crate::keys::{MOST_BEADS, SPEED, Text, choice, positive};
 use crate::report::{FileProblem, brief};
-use crate::values::{Units, View, record};
+use crate::values::{TableView, Units, record};
 use hertzchain_chain::{Gap, Initial, Motion, Push};
 use std::ops::Range;
 use std::path::Path;
@@ -35,7 +35,7 @@ impl Solver {
     /// The accuracy when a file names none.
     pub const DEFAULT_ACCURACY: f64 = 1e-6;
 
-    pub(crate) fn read(root: &View<'_>) -> Result<Self, FileProblem> {
+    pub(crate) fn read(root: &TableView<'_>) -> Result<Self, FileProblem> {
         let table = root.table("solver");
         let number = |key| table.map_or(Ok(None), |t| t.quantity(key));
         let method = table.and_then(|t| Method::from_name(t.text("method")?));
@@ -70,7 +70,7 @@ impl Liquid {
     }
 
     /// The liquid of a file or of a case.
-    pub(crate) fn read_from(root: &View<'_>) -> Result<Option<Self>, FileProblem> {
+    pub(crate) fn read_from(root: &TableView<'_>) -> Result<Option<Self>, FileProblem> {
         let table = root.table("liquid");
         table.map(|table| Self::read(Some(&table))).transpose()
     }
@@ -94,7 +94,7 @@ pub(crate) struct Sensors {
 }
 
 impl Sensors {
-    pub(crate) fn read(root: &View<'_>, beads: usize) -> Result<Self, FileProblem> {
+    pub(crate) fn read(root: &TableView<'_>, beads: usize) -> Result<Self, FileProblem> {
         let usual = if beads >= 8 { 7 } else { 1 };
         let table = root.table("sensors");
         let list = |key| table.map_or(Ok(Vec::new()), |t| t.counts(key));
@@ -112,19 +112,43 @@ impl Sensors {
     }
 }
 
-/// Gaps with their places in the file.
-pub(crate) fn gaps(root: &View<'_>) -> Result<Vec<(Gap, Range<usize>)>, FileProblem> {
-    let gap = |table: &View<'_>| {
-        let contact = table.count("contact")?.unwrap_or(0);
+/// Gaps with their places in the file, one a contact; `first` and `last` are the chain's contacts.
+pub(crate) fn gaps(
+    root: &TableView<'_>,
+    (first, last): (usize, usize),
+) -> Result<Vec<(Gap, Range<usize>)>, FileProblem> {
+    let mut gaps = Vec::new();
+    for table in root.tables("gaps") {
+        let ends = ["from", "to"].into_iter().find(|key| table.has(key));
+        let (contacts, span) = match (table.count("contact")?, ends) {
+            (Some(contact), None) => (contact..=contact, table.span_of("contact")),
+            (None, Some(end)) => {
+                let from = table.count("from")?.unwrap_or(first);
+                (from..=table.count("to")?.unwrap_or(last), table.span_of(end))
+            }
+            (given, _) => {
+                let label = "expected `contact`, or `from` and `to`";
+                let message = match given {
+                    Some(_) => "this gap has both a contact and a range of contacts",
+                    None => "this gap has no contact",
+                };
+                return Err(FileProblem::new(&table.span(), message, label));
+            }
+        };
+        // Contacts beyond the longest chain are outside of any.
+        if contacts.is_empty() || contacts.end() - contacts.start() > MOST_BEADS as usize {
+            let message = format!("no contact is from {} to {}", contacts.start(), contacts.end());
+            return Err(FileProblem::new(&span, message, "expected `to` at or after `from`"));
+        }
         let gap_m = table.needed("gap")?;
-        Ok((Gap { contact, gap_m }, table.span_of("contact")))
-    };
-    root.tables("gaps").iter().map(gap).collect()
+        gaps.extend(contacts.map(|contact| (Gap { contact, gap_m }, span.clone())));
+    }
+    Ok(gaps)
 }
 
 /// Initial deviations with their places in the file.
-pub(crate) fn initial(root: &View<'_>) -> Result<Vec<(Initial, Range<usize>)>, FileProblem> {
-    let initial = |table: &View<'_>| {
+pub(crate) fn initial(root: &TableView<'_>) -> Result<Vec<(Initial, Range<usize>)>, FileProblem> {
+    let initial = |table: &TableView<'_>| {
         if !table.has("displacement") && !table.has("velocity") {
             let message = "this bead is neither displaced nor moving";
             let label = "expected `displacement` or `velocity`, or no such table";
@@ -150,7 +174,7 @@ pub(crate) struct BodyShape {
 }
 
 impl BodyShape {
-    fn read(table: &View<'_>, materials: &Materials) -> Result<Self, FileProblem> {
+    fn read(table: &TableView<'_>, materials: &Materials) -> Result<Self, FileProblem> {
         Ok(Self {
             radius_m: table.quantity("radius")?,
             mass_kg: table.quantity("mass")?,
@@ -180,7 +204,7 @@ pub(crate) enum Near {
 
 impl Near {
     pub(crate) fn read(
-        root: &View<'_>,
+        root: &TableView<'_>,
         materials: &Materials,
         folder: &Path,
     ) -> Result<Self, FileProblem> {
@@ -199,9 +223,9 @@ impl Near {
                 shape: BodyShape::read(&table, materials)?,
                 motion: motion(tag, &table, folder)?,
             }),
-            (None, None) if root.has("initial") => {
-                Ok(Self::Free { span: root.tables("initial").first().map_or(0..0, View::span) })
-            }
+            (None, None) if root.has("initial") => Ok(Self::Free {
+                span: root.tables("initial").first().map_or(0..0, TableView::span),
+            }),
             (None, None) => {
                 let label = "expected [striker], [driven] or [[initial]]";
                 Err(root.problem("beads", "nothing sets the chain in motion", label))
@@ -235,7 +259,7 @@ impl Near {
 }
 
 /// The motion of `[driven]`, no faster than a striker may be.
-fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, FileProblem> {
+fn motion(tag: &str, table: &TableView<'_>, folder: &Path) -> Result<Motion, FileProblem> {
     let amplitude_m = table.quantity("amplitude")?.unwrap_or(1.0);
     if amplitude_m == 0.0 {
         let message = "an amplitude of 0 sets nothing in motion";
@@ -259,7 +283,7 @@ fn motion(tag: &str, table: &View<'_>, folder: &Path) -> Result<Motion, FileProb
 }
 
 /// Measured motion: points in the experiment file, or in a CSV file beside it.
-fn motion_table(table: &View<'_>, folder: &Path) -> Result<Motion, FileProblem> {
+fn motion_table(table: &TableView<'_>, folder: &Path) -> Result<Motion, FileProblem> {
     let (times_s, positions_m, key) = match (table.text("file"), table.has("times")) {
         (Some(_), true) => {
             let message = "the motion stands both here and in a file";
@@ -293,7 +317,7 @@ fn motion_table(table: &View<'_>, folder: &Path) -> Result<Motion, FileProblem> 
 }
 
 /// The two columns of a CSV file, whose first line names them with their units.
-fn motion_file(table: &View<'_>, path: &Path) -> Result<(Vec<f64>, Vec<f64>), FileProblem> {
+fn motion_file(table: &TableView<'_>, path: &Path) -> Result<(Vec<f64>, Vec<f64>), FileProblem> {
     /// Larger files are a mistake.
     const MOST_BYTES: u64 = 64 << 20;
     let header = match table.units {
@@ -323,7 +347,7 @@ fn motion_file(table: &View<'_>, path: &Path) -> Result<(Vec<f64>, Vec<f64>), Fi
 }
 
 /// The push on bead 1.
-pub(crate) fn push(root: &View<'_>) -> Result<Push, FileProblem> {
+pub(crate) fn push(root: &TableView<'_>) -> Result<Push, FileProblem> {
     let Some((tag, table)) = root.variant("near_end") else {
         return Ok(Push::None);
     };
@@ -351,7 +375,7 @@ pub(crate) enum Far {
 
 impl Far {
     /// A half-bead like bead N when the file is silent.
-    pub(crate) fn read(root: &View<'_>, materials: &Materials) -> Result<Self, FileProblem> {
+    pub(crate) fn read(root: &TableView<'_>, materials: &Materials) -> Result<Self, FileProblem> {
         let Some((tag, table)) = root.variant("far_end") else {
             let shape = BodyShape::default();
             return Ok(Self::Wall { is_plane: false, shape, stop_kg: None });

@@ -7,7 +7,7 @@ use crate::reading::Reading;
 use crate::report::FileProblem;
 use crate::rig::{self, Campaign, CaseSpec, Rig};
 use crate::settings::{self, Far, Liquid, Near, Sensors, Solver};
-use crate::values::{Units, View};
+use crate::values::{TableView, Units};
 use hertzchain_chain::chain::STANDARD_GRAVITY_M_S2;
 use hertzchain_chain::laws::LawError;
 use hertzchain_chain::wave::SolveError;
@@ -58,7 +58,7 @@ pub(crate) struct Spec {
 
 impl Spec {
     /// Reads a checked document; files it names lie in `folder`.
-    pub(crate) fn read(root: &View<'_>, folder: &Path) -> Result<Self, FileProblem> {
+    pub(crate) fn read(root: &TableView<'_>, folder: &Path) -> Result<Self, FileProblem> {
         /// Coefficient of dry friction between beads and track, where a file has none.
         const FRICTION: f64 = 0.05;
         let materials = Materials::read(root)?;
@@ -70,6 +70,7 @@ impl Spec {
             Units::Dimensionless => 0.0,
         };
         let near = Near::read(root, &materials, folder)?;
+        let far = Far::read(root, &materials)?;
         let loads = ["near_end", "track", "far_end"];
         let load = loads.into_iter().find(|key| root.has(key));
         let suspension = root.table("suspension");
@@ -81,10 +82,9 @@ impl Spec {
             beads_less: 0,
             push: settings::push(root)?,
             load_span: load.map_or(0..0, |key| root.span_of(key)),
-            far: Far::read(root, &materials)?,
             far_span: root.span_of("far_end"),
             sections: contacts::read(root, &materials, &groups)?,
-            gaps: settings::gaps(root)?,
+            gaps: settings::gaps(root, contact_ends(&near, &far, count))?,
             initial: settings::initial(root)?,
             incline_rad: track("incline")?.unwrap_or(0.0),
             gravity_m_s2: track("gravity")?.unwrap_or(gravity),
@@ -105,6 +105,7 @@ impl Spec {
             campaign: Campaign::read(root, near.speed_m_s())?,
             cases: rig::cases(root, &materials, &groups)?,
             near,
+            far,
             reading: Reading::read(root),
             materials,
             groups,
@@ -147,8 +148,8 @@ impl Spec {
         // Bodies that move: the beads, body 0 if there is one, and a stop of finite mass.
         let first = usize::from(matches!(self.near, Near::Free { .. }));
         let bodies = first..=beads + usize::from(self.far.stop_kg().is_some());
-        // Contacts between two bodies; a free end has none.
-        let contacts = first..=beads - usize::from(matches!(self.far, Far::Free));
+        let (first, last) = contact_ends(&self.near, &self.far, beads);
+        let contacts = first..=last;
         let sensors = &self.sensors;
         self.inside("sensor bead", sensors.bead, &(1..=beads), &sensors.span)?;
         for (bead, span) in &sensors.beads {
@@ -316,6 +317,12 @@ impl Spec {
             )),
         }
     }
+}
+
+/// First and last contact between two bodies; a free end has none.
+fn contact_ends(near: &Near, far: &Far, beads: usize) -> (usize, usize) {
+    let first = usize::from(matches!(near, Near::Free { .. }));
+    (first, beads - usize::from(matches!(far, Far::Free)).min(beads))
 }
 
 /// Two gaps in one contact, or two initial states of one bead.

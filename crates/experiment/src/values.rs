@@ -1,7 +1,7 @@
 //! Values of checked tables in SI: a key's unit and limits come from its declaration.
 
-use crate::document::{Node, Number, Value};
-use crate::keys::{Fields, Kind, LARGEST, SMALLEST, ValueLimits};
+use crate::document::{Node, TomlNumber, TomlValue};
+use crate::keys::{Fields, KeyKind, LARGEST, SMALLEST, ValueLimits};
 use crate::report::{FileProblem, short};
 use crate::units::{self, Dimension};
 use std::ops::Range;
@@ -72,14 +72,14 @@ impl ExpectedQuantity<'_> {
     /// The node's value in SI, within the limits.
     pub(crate) fn read(&self, node: &Node) -> Result<Si, FileProblem> {
         let si = match &node.value {
-            Value::Number(number) => self.number(node, *number)?,
-            Value::Text(text) => self.quantity(node, text)?,
+            TomlValue::Number(number) => self.number(node, *number)?,
+            TomlValue::Text(text) => self.quantity(node, text)?,
             _ => return Err(self.problem(node, &format!(" is {}, not a quantity", node.kind()))),
         };
         self.within(node, si)
     }
 
-    fn number(&self, node: &Node, number: Number) -> Result<Si, FileProblem> {
+    fn number(&self, node: &Node, number: TomlNumber) -> Result<Si, FileProblem> {
         let plain = number.from_code || self.units == Units::Dimensionless;
         match plain || self.dimension() == Dimension::NONE {
             true => Ok(Si { value: number.value, half_digit: number.half_digit }),
@@ -120,7 +120,7 @@ impl ExpectedQuantity<'_> {
         };
         // As the user wrote it; in SI when a program set it.
         let written = match (&node.value, self.unit) {
-            (Value::Text(text), _) => text.trim().to_owned(),
+            (TomlValue::Text(text), _) => text.trim().to_owned(),
             (_, "1") => short(si.value),
             (_, unit) => self.units.with_unit(&short(si.value), unit),
         };
@@ -135,7 +135,7 @@ pub(crate) fn whole(name: &str, least: i64, most: i64, node: &Node) -> Result<i6
         _ => format!("expected a whole number from {least} to {most}"),
     };
     let problem = |wrong: &str| FileProblem::new(&node.span, format!("`{name}` {wrong}"), &label);
-    let Value::Number(Number { value, .. }) = node.value else {
+    let TomlValue::Number(TomlNumber { value, .. }) = node.value else {
         return Err(problem(&format!("is {}", node.kind())));
     };
     // Whole numbers beyond 2^53 are not distinguished by a double.
@@ -164,13 +164,13 @@ pub(crate) struct SpeedLaw {
 
 /// One table of a file with the declaration of its keys.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View<'a> {
+pub(crate) struct TableView<'a> {
     pub(crate) node: &'a Node,
     pub(crate) fields: &'static Fields,
     pub(crate) units: Units,
 }
 
-impl<'a> View<'a> {
+impl<'a> TableView<'a> {
     pub(crate) fn span(&self) -> Range<usize> {
         self.node.span.clone()
     }
@@ -195,7 +195,7 @@ impl<'a> View<'a> {
     }
 
     /// A declared key with its value; `None` where the table lacks either.
-    fn value(&self, name: &str) -> Option<(&'static Kind, &'a Node)> {
+    fn value(&self, name: &str) -> Option<(&'static KeyKind, &'a Node)> {
         Some((&self.fields.key(name)?.kind, self.node.get(name)?))
     }
 
@@ -214,7 +214,7 @@ impl<'a> View<'a> {
     /// A quantity in SI.
     pub(crate) fn quantity(&self, name: &str) -> Result<Option<f64>, FileProblem> {
         match self.value(name) {
-            Some((Kind::Quantity(unit, limits), node)) => {
+            Some((KeyKind::Quantity(unit, limits), node)) => {
                 self.si(name, unit, *limits, node).map(Some)
             }
             _ => Ok(None),
@@ -230,7 +230,7 @@ impl<'a> View<'a> {
 
     pub(crate) fn quantities(&self, name: &str) -> Result<Vec<f64>, FileProblem> {
         match self.value(name) {
-            Some((Kind::Quantities(unit), node)) => (node.members().iter())
+            Some((KeyKind::Quantities(unit), node)) => (node.members().iter())
                 .map(|member| self.si(name, unit, ValueLimits::ANY, member))
                 .collect(),
             _ => Ok(Vec::new()),
@@ -238,7 +238,7 @@ impl<'a> View<'a> {
     }
 
     pub(crate) fn speed_law(&self, name: &str) -> Result<Option<SpeedLaw>, FileProblem> {
-        let Some((Kind::Scaled(unit, limits), node)) = self.value(name) else {
+        let Some((KeyKind::Scaled(unit, limits), node)) = self.value(name) else {
             return Ok(None);
         };
         let (prefactor, exponent) = match (node.get(POWER_LAW[0]), node.get(POWER_LAW[1])) {
@@ -258,7 +258,7 @@ impl<'a> View<'a> {
 
     pub(crate) fn count(&self, name: &str) -> Result<Option<usize>, FileProblem> {
         match self.value(name) {
-            Some((Kind::Count { least, most }, node)) => {
+            Some((KeyKind::Count { least, most }, node)) => {
                 let found = whole(name, *least, *most, node)?;
                 Ok(usize::try_from(found).ok())
             }
@@ -281,7 +281,7 @@ impl<'a> View<'a> {
 
     pub(crate) fn flag(&self, name: &str) -> bool {
         let value = self.node.get(name).map(|node| &node.value);
-        value == Some(&Value::Flag(true))
+        value == Some(&TomlValue::Flag(true))
     }
 
     fn of(&self, node: &'a Node, fields: &'static Fields) -> Self {
@@ -290,14 +290,14 @@ impl<'a> View<'a> {
 
     pub(crate) fn table(&self, name: &str) -> Option<Self> {
         match self.value(name) {
-            Some((Kind::Table(fields), node)) => Some(self.of(node, fields)),
+            Some((KeyKind::Table(fields), node)) => Some(self.of(node, fields)),
             _ => None,
         }
     }
 
     pub(crate) fn tables(&self, name: &str) -> Vec<Self> {
         match self.value(name) {
-            Some((Kind::Tables(fields), node)) => {
+            Some((KeyKind::Tables(fields), node)) => {
                 let members = node.members().iter();
                 members.map(|member| self.of(member, fields)).collect()
             }
@@ -308,7 +308,7 @@ impl<'a> View<'a> {
     /// Tables with names of the user's.
     pub(crate) fn named(&self, name: &str) -> Vec<(&'a str, Range<usize>, Self)> {
         match self.value(name) {
-            Some((Kind::Named(fields), node)) => (node.entries().iter())
+            Some((KeyKind::Named(fields), node)) => (node.entries().iter())
                 .map(|e| (e.key.as_str(), e.key_span.clone(), self.of(&e.node, fields)))
                 .collect(),
             _ => Vec::new(),
@@ -317,7 +317,7 @@ impl<'a> View<'a> {
 
     /// A table whose keys depend on its tag, with the tag.
     pub(crate) fn variant(&self, name: &str) -> Option<(&'a str, Self)> {
-        let Some((Kind::Variants(variants), node)) = self.value(name) else {
+        let Some((KeyKind::Variants(variants), node)) = self.value(name) else {
             return None;
         };
         let tag = node.get(variants.tag)?.text()?;
@@ -328,29 +328,29 @@ impl<'a> View<'a> {
 /// A type that the value of a key can have.
 pub(crate) trait FromKey: Sized {
     /// The value; `None` where the file gives none.
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem>;
+    fn from_key(table: &TableView<'_>, key: &str) -> Result<Option<Self>, FileProblem>;
 }
 
 impl FromKey for f64 {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
+    fn from_key(table: &TableView<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         table.quantity(key)
     }
 }
 
 impl FromKey for usize {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
+    fn from_key(table: &TableView<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         table.count(key)
     }
 }
 
 impl FromKey for String {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
+    fn from_key(table: &TableView<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         Ok(table.text(key).map(str::to_owned))
     }
 }
 
 impl<T: FromKey> FromKey for Option<T> {
-    fn from_key(table: &View<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
+    fn from_key(table: &TableView<'_>, key: &str) -> Result<Option<Self>, FileProblem> {
         Ok(T::from_key(table, key)?.map(Some))
     }
 }
@@ -376,7 +376,7 @@ macro_rules! record {
             };
 
             pub(crate) fn read(
-                table: Option<&$crate::values::View<'_>>,
+                table: Option<&$crate::values::TableView<'_>>,
             ) -> Result<Self, $crate::report::FileProblem> {
                 $(let $field = match table {
                     Some(table) => <$Own as $crate::values::FromKey>::from_key(table, stringify!($key))?,

@@ -136,3 +136,22 @@ fn a_chain_of_100_000_beads_is_a_count_in_a_file() {
     assert_eq!(chain.beads.len(), 100_000);
     assert_eq!(chain.sections[0].contacts, 0..=100_000);
 }
+
+#[test]
+fn gaps_of_a_range_stand_in_every_contact_of_it() {
+    let gaps = |text: &str| format!("[striker]\nspeed = \"1 m/s\"\n[[gaps]]\n{text}\n");
+    let contacts = |text: &str| {
+        let (chain, _) = read(&gaps(&format!("{text}\ngap = \"1 um\""))).chain(None).unwrap();
+        chain.gaps.iter().map(|gap| gap.contact).collect::<Vec<_>>()
+    };
+    assert_eq!(contacts("from = 3\nto = 5"), [3, 4, 5]);
+    assert_eq!(contacts("from = 8"), [8, 9, 10]);
+    assert_eq!(contacts("to = 1"), [0, 1]);
+    let wrong = |text: &str| mistake(&gaps(&format!("{text}\ngap = \"1 um\"")));
+    assert!(wrong("").contains("this gap has no contact"));
+    assert!(wrong("contact = 1\nto = 2").contains("both a contact and a range"));
+    assert!(wrong("from = 5\nto = 4").contains("no contact is from 5 to 4"));
+    assert!(wrong("from = 9\nto = 11").contains("contact 11 is outside the chain of 10"));
+    let twice = "from = 3\nto = 5\ngap = \"1 um\"\n[[gaps]]\ncontact = 4";
+    assert!(wrong(twice).contains("contact 4 stands here a second time"));
+}

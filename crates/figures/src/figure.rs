@@ -1,6 +1,6 @@
 //! A figure: panels in a grid, as SVG, PNG or PDF.
 
-use crate::chart::{Chart, ChartStyle, Prepared, x_scale};
+use crate::chart::{Chart, Prepared, SMALL, x_scale};
 use crate::draw::{Colour, Margins, PT_PER_MM, Point, Rect, Svg};
 use crate::files::{self, FigureError};
 use crate::matrix::VerdictMatrix;
@@ -66,6 +66,7 @@ impl Panel {
 /// assert!(svg.starts_with("<svg"));
 /// ```
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Figure {
     width_mm: f64,
     pub(crate) height_mm: f64,
@@ -79,7 +80,6 @@ pub struct Figure {
 
 impl Figure {
     /// A figure of any size; sizes are held between 10 mm and 5 m.
-    #[must_use]
     pub fn new(width_mm: f64, height_mm: f64) -> Self {
         let held = |mm: f64| match mm.is_finite() {
             true => mm.clamp(10.0, 5000.0),
@@ -98,47 +98,40 @@ impl Figure {
     }
 
     /// As wide as one journal column.
-    #[must_use]
     pub fn single_column(height_mm: f64) -> Self {
         Self::new(SINGLE_COLUMN_MM, height_mm)
     }
 
     /// As wide as a journal page of two columns.
-    #[must_use]
     pub fn double_column(height_mm: f64) -> Self {
         Self::new(DOUBLE_COLUMN_MM, height_mm)
     }
 
     /// Puts the panels into this many columns.
-    #[must_use]
     pub fn columns(mut self, columns: usize) -> Self {
         self.columns = columns.max(1);
         self
     }
 
     /// Adds a panel.
-    #[must_use]
     pub fn panel(mut self, panel: impl Into<Panel>) -> Self {
         self.panels.push(panel.into());
         self
     }
 
     /// Letters (a), (b), ... above the panels.
-    #[must_use]
     pub fn letters(mut self) -> Self {
         self.letters = true;
         self
     }
 
     /// Charts of a column share their x axis; only the lowest is labelled.
-    #[must_use]
     pub fn share_x(mut self) -> Self {
         self.share_x = true;
         self
     }
 
     /// Title inside the file, for readers of the SVG; not drawn.
-    #[must_use]
     pub fn title(mut self, title: &str) -> Self {
         self.title = title.into();
         self
@@ -146,14 +139,12 @@ impl Figure {
 
     /// What a journal prints below the figure: plain text, not drawn, kept in
     /// the SVG as its description.
-    #[must_use]
     pub fn caption(mut self, caption: &str) -> Self {
         self.caption = caption.into();
         self
     }
 
     /// The caption and, in front of it, the title.
-    #[must_use]
     pub fn caption_text(&self) -> String {
         let parts = [&self.title, &self.caption].into_iter();
         let parts: Vec<&str> = parts.map(|text| text.trim_end_matches('.')).collect();
@@ -162,13 +153,11 @@ impl Figure {
     }
 
     /// The picture as SVG with text as text, measured with Noto Sans.
-    #[must_use]
     pub fn svg(&self) -> String {
         self.drawn(Svg::new())
     }
 
     /// The picture as SVG with text as outlines, which look the same everywhere.
-    #[must_use]
     pub fn svg_outlined(&self) -> String {
         let mut svg = Svg::new();
         svg.outlines = true;
@@ -245,7 +234,7 @@ fn panel_letter(index: usize) -> String {
 /// Gives charts one x range and labels the last of them.
 fn share_x(panels: &mut [Panel], members: &[usize]) {
     let ranges = members.iter().filter_map(|i| match &panels[*i] {
-        Panel::Chart(chart) => Some(x_scale(chart, &ChartStyle::JOURNAL)),
+        Panel::Chart(chart) => Some(x_scale(chart)),
         _ => None,
     });
     let ranges = ranges.map(|scale| (scale.lo, scale.hi));
@@ -313,7 +302,7 @@ impl PanelGrid {
 
     /// A chart for a frame of this size.
     fn prepared<'a>(&self, chart: &'a Chart) -> Prepared<'a> {
-        Prepared::new(chart, ChartStyle::JOURNAL, self.frame)
+        Prepared::new(chart, self.frame)
     }
 
     fn fit(&mut self, page: (f64, f64)) {
@@ -341,6 +330,6 @@ impl PanelGrid {
     /// Room between the heading and the frame.
     fn above(&self, index: usize) -> f64 {
         let top = self.down[index / self.columns].top;
-        (top - HEADING - 0.55 * ChartStyle::JOURNAL.small).max(0.0)
+        (top - HEADING - 0.55 * SMALL).max(0.0)
     }
 }

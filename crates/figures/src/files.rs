@@ -1,4 +1,4 @@
-//! Files of pictures: PNG, and PDF of one page with paths, shaded balls and images, whose text
+//! Files of pictures: PNG, and PDF of one page with paths and images, whose text
 //! must be outlines.
 //!
 //! svg2pdf needs an older resvg and codecs of images that take minutes to build; what this
@@ -7,9 +7,7 @@
 use std::fmt::Write as _;
 
 use resvg::tiny_skia::{self, PathSegment, Pixmap, Point, Transform};
-use resvg::usvg::{
-    Color, Group, Image, ImageKind, Node, Options, Paint, Path, RadialGradient, Tree,
-};
+use resvg::usvg::{Color, Group, Image, ImageKind, Node, Options, Paint, Path, Tree};
 use thiserror::Error;
 
 /// A picture could not be rendered as PNG.
@@ -116,9 +114,6 @@ fn encoder(
     Some(encoder)
 }
 
-/// Discs that stand for a radial gradient.
-const SHADES: u16 = 32;
-
 /// Renders an SVG of the given size in points.
 pub(crate) fn pdf(svg: &str, (width, height): (f64, f64)) -> Result<Vec<u8>, FigureError> {
     let tree =
@@ -171,12 +166,8 @@ impl Page {
     fn path(&mut self, path: &Path, opacity: f32) {
         let outline = outline(path.data());
         self.open(path.abs_transform(), opacity);
-        match path.fill().map(|fill| fill.paint()) {
-            Some(Paint::Color(colour)) => {
-                self.write(&format!("{} rg {outline}f ", rgb(*colour)));
-            }
-            Some(Paint::RadialGradient(shade)) => self.shade(&outline, shade),
-            _ => {}
+        if let Some(Paint::Color(colour)) = path.fill().map(|fill| fill.paint()) {
+            self.write(&format!("{} rg {outline}f ", rgb(*colour)));
         }
         if let Some(stroke) = path.stroke()
             && let Paint::Color(colour) = stroke.paint()
@@ -192,26 +183,6 @@ impl Page {
             ));
         }
         self.write("Q\n");
-    }
-
-    /// Discs of falling size within the outline.
-    fn shade(&mut self, outline: &str, shade: &RadialGradient) {
-        self.write(&format!("q {outline}W n "));
-        if let Some(last) = shade.stops().last() {
-            self.write(&format!("{} rg {outline}f ", rgb(last.color())));
-        }
-        let Transform { sx, kx, ky, sy, tx, ty } = shade.transform();
-        self.write(&format!("{sx} {ky} {kx} {sy} {tx} {ty} cm "));
-        for step in (0..SHADES).rev() {
-            let share = (f32::from(step) + 0.5) / f32::from(SHADES);
-            let radius = shade.r().get() * f32::from(step + 1) / f32::from(SHADES);
-            let disc = tiny_skia::PathBuilder::from_circle(shade.cx(), shade.cy(), radius);
-            if let Some(disc) = disc {
-                let (colour, disc) = (colour_at(shade, share), self::outline(&disc));
-                self.write(&format!("{colour} rg {disc}f "));
-            }
-        }
-        self.write("Q ");
     }
 
     fn image(&mut self, image: &Image) {
@@ -263,19 +234,6 @@ fn rgb(colour: Color) -> String {
     let share = |part: u8| f32::from(part) / 255.0;
     let [r, g, b] = [colour.red, colour.green, colour.blue].map(share);
     format!("{r:.4} {g:.4} {b:.4}")
-}
-
-/// Linear between the stops of a gradient.
-fn colour_at(shade: &RadialGradient, share: f32) -> String {
-    let place = |i: usize| shade.stops()[i].offset().get();
-    let last = shade.stops().len().saturating_sub(1);
-    let next = (0..=last).find(|i| place(*i) >= share).unwrap_or(last);
-    let (from, to) = (&shade.stops()[next.saturating_sub(1)], &shade.stops()[next]);
-    let span = (to.offset().get() - from.offset().get()).max(1e-6);
-    let part = ((share - from.offset().get()) / span).clamp(0.0, 1.0);
-    let mix = |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * part).round() as u8;
-    let (a, b) = (from.color(), to.color());
-    rgb(Color { red: mix(a.red, b.red), green: mix(a.green, b.green), blue: mix(a.blue, b.blue) })
 }
 
 /// Operators that make a path the current one.

@@ -1,7 +1,7 @@
 //! Maps of a quantity over two axes, as in a space-time diagram.
 
 use crate::axis::{Room, Scale, Ticks, ticks};
-use crate::chart::{ChartStyle, Plot};
+use crate::chart::{FRAME, LABEL, Plot, SMALL};
 use crate::draw::{Colour, ColourMap, Paint, PathData, Point, Rect, Svg};
 use crate::files::{indexed_png, rgb_png};
 use crate::text::{Anchor, TextLine};
@@ -17,6 +17,7 @@ const MISSING: u8 = 255;
 
 /// Values on a regular grid, to be shown as colours.
 #[derive(Debug, Clone, PartialEq)]
+#[must_use]
 pub struct HeatMap {
     columns: usize,
     rows: usize,
@@ -31,7 +32,6 @@ pub struct HeatMap {
 impl HeatMap {
     /// `values` row by row: `rows` rows of `columns` values each. The first row
     /// lies at the lower end of the y axis. Missing values count as not a number.
-    #[must_use]
     pub fn new(columns: usize, rows: usize, values: &[f64]) -> Self {
         let number = |n: usize| n as f64;
         Self {
@@ -47,21 +47,18 @@ impl HeatMap {
     }
 
     /// Outer edges of the first and last column on the x axis.
-    #[must_use]
     pub fn x_edges(mut self, from: f64, to: f64) -> Self {
         self.x = (from, to);
         self
     }
 
     /// Outer edges of the first and last row on the y axis.
-    #[must_use]
     pub fn y_edges(mut self, from: f64, to: f64) -> Self {
         self.y = (from, to);
         self
     }
 
     /// Chooses the colour map; sequential by default.
-    #[must_use]
     pub fn colours(mut self, map: ColourMap) -> Self {
         self.map = map;
         self
@@ -69,14 +66,12 @@ impl HeatMap {
 
     /// Values at the ends of the colour bar; by default those of the data,
     /// symmetric about zero for a diverging map.
-    #[must_use]
     pub fn limits(mut self, from: f64, to: f64) -> Self {
         self.limits = Some((from, to));
         self
     }
 
-    /// Label of the colour bar.
-    #[must_use]
+    /// Adds a colour bar with a label.
     pub fn label(mut self, label: &str) -> Self {
         self.label = label.into();
         self
@@ -111,45 +106,49 @@ impl HeatMap {
         Scale { lo, hi, log: false }
     }
 
-    fn bar_ticks(&self, style: &ChartStyle, height: f64) -> Ticks {
-        let room = Room { length: height, font: style.small, side_by_side: false };
+    fn bar_ticks(&self, height: f64) -> Ticks {
+        let room = Room { length: height, font: SMALL, side_by_side: false };
         ticks(&self.scale(), &room)
     }
 
     /// Room for bar, numbers and label: right of the frame, and above it.
-    pub(crate) fn bar_room(&self, style: &ChartStyle, height: f64) -> (f64, f64) {
-        let label = TextLine::new(&self.label, style.label);
-        let label = if self.label.is_empty() { 0.0 } else { label.height() + 3.0 };
-        let found = self.bar_ticks(style, height);
-        let above = found.exponent.map_or(0.0, |_| 1.5 * style.small);
-        (GAP + BAR + 3.0 + found.widest(style.small) + label, above)
+    pub(crate) fn bar_room(&self, height: f64) -> (f64, f64) {
+        if self.label.is_empty() {
+            return (0.0, 0.0);
+        }
+        let label = TextLine::new(&self.label, LABEL);
+        let found = self.bar_ticks(height);
+        let above = found.exponent.map_or(0.0, |_| 1.5 * SMALL);
+        (GAP + BAR + 3.0 + found.widest(SMALL) + label.height() + 3.0, above)
     }
 
     /// Draws bar, ticks, numbers and label right of `frame`.
-    pub(crate) fn draw_bar(&self, svg: &mut Svg, frame: &Rect, style: &ChartStyle) {
+    pub(crate) fn draw_bar(&self, svg: &mut Svg, frame: &Rect) {
+        if self.label.is_empty() {
+            return;
+        }
         let bar = Rect::sized(frame.x1 + GAP, frame.y0, BAR, frame.height());
         let shades = (0..256).map(|i| self.map.colour(1.0 - f64::from(i) / 255.0));
         let shades: Vec<u8> = shades.flat_map(|c| [c.0, c.1, c.2]).collect();
         if let Some(png) = rgb_png(1, 256, &shades, None) {
             svg.image(&bar, &png);
         }
-        let (found, scale, ink) =
-            (self.bar_ticks(style, bar.height()), self.scale(), Colour::BLACK);
+        let (found, scale, ink) = (self.bar_ticks(bar.height()), self.scale(), Colour::BLACK);
         let mut path = PathData::new();
         path.rect(&bar);
         for tick in &found.major {
             let y = bar.y1 - scale.share(tick.value).unwrap_or(0.0) * bar.height();
             path.segment(Point::new(bar.x1 - 2.5, y), Point::new(bar.x1, y));
-            let line = TextLine::new(&tick.label, style.small);
+            let line = TextLine::new(&tick.label, SMALL);
             line.draw(svg, Point::new(bar.x1 + 2.5, y), Anchor::LEFT_MIDDLE, ink);
         }
-        svg.path(&path, &Paint::line(ink, style.frame));
-        if let Some(factor) = found.factor(style.small) {
-            let at = Point::new(bar.x0, bar.y0 - 0.6 * style.small);
+        svg.path(&path, &Paint::line(ink, FRAME));
+        if let Some(factor) = found.factor(SMALL) {
+            let at = Point::new(bar.x0, bar.y0 - 0.6 * SMALL);
             factor.draw(svg, at, Anchor::LEFT, ink);
         }
-        let label = TextLine::new(&self.label, style.label).shrunk_to(frame.height());
-        let x = bar.x1 + 6.0 + found.widest(style.small) + label.ascent();
+        let label = TextLine::new(&self.label, LABEL).shrunk_to(frame.height());
+        let x = bar.x1 + 6.0 + found.widest(SMALL) + label.ascent();
         label.draw_turned(svg, Point::new(x, bar.centre().y), Anchor::CENTRE, ink, 90.0);
     }
 

@@ -19,7 +19,6 @@ mod files;
 mod heat;
 mod matrix;
 mod rig;
-mod rig_labels;
 mod text;
 
 pub use animation::Animation;
@@ -29,4 +28,4 @@ pub use figure::{Figure, Panel};
 pub use files::FigureError;
 pub use heat::HeatMap;
 pub use matrix::{Verdict, VerdictMatrix};
-pub use rig::{FarEnd, RigDrawing};
+pub use rig::{RigDrawing, RigEnd};

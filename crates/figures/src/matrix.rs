@@ -4,28 +4,40 @@ use crate::draw::{Colour, PT_PER_MM, Paint, PathData, Point, Rect, Svg};
 use crate::figure::{DOUBLE_COLUMN_MM, Figure, SINGLE_COLUMN_MM};
 use crate::text::{Anchor, LEAST_SIZE, TextLine, wrap};
 
-/// Result of the check of a claim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The answer to "does the model show what is claimed?".
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Verdict {
-    /// The claim holds.
+    /// It does.
     Holds,
-    /// It holds in part.
+    /// It does in at least half of the comparisons that the claim covers, or meets the claim's
+    /// weaker threshold.
     InPart,
-    /// It fails.
+    /// It does not, or in fewer.
     Fails,
-    /// It cannot be decided.
+    /// The numbers do not decide.
     NotDecidable,
 }
 
 impl Verdict {
-    const ALL: [Self; 4] = [Self::Holds, Self::InPart, Self::Fails, Self::NotDecidable];
+    /// All verdicts.
+    pub const ALL: [Self; 4] = [Self::Holds, Self::InPart, Self::Fails, Self::NotDecidable];
 
-    fn name(self) -> &'static str {
+    /// As written in tables.
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Holds => "holds",
             Self::InPart => "holds in part",
             Self::Fails => "fails",
             Self::NotDecidable => "not decidable",
+        }
+    }
+
+    /// Share of the claim that is met, for ranking: 1, 1/2 or 0.
+    pub const fn score(self) -> f64 {
+        match self {
+            Self::Holds => 1.0,
+            Self::InPart => 0.5,
+            Self::Fails | Self::NotDecidable => 0.0,
         }
     }
 
@@ -37,6 +49,12 @@ impl Verdict {
             Self::Fails => Colour(186, 66, 10),
             Self::NotDecidable => Colour::grey(226),
         }
+    }
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -59,6 +77,7 @@ const MARGINS: f64 = 6.0;
 
 /// Rows are claims, columns readings, cells verdicts.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[must_use]
 pub struct VerdictMatrix {
     columns: Vec<String>,
     rows: Vec<(String, Vec<Verdict>)>,
@@ -68,14 +87,12 @@ pub struct VerdictMatrix {
 
 impl VerdictMatrix {
     /// A table with the given columns and no rows.
-    #[must_use]
     pub fn new(columns: &[&str]) -> Self {
         let columns = columns.iter().map(|c| (*c).to_owned()).collect();
         Self { columns, ..Self::default() }
     }
 
     /// Adds a row; cells beyond the columns are dropped, missing ones stay empty.
-    #[must_use]
     pub fn row(mut self, claim: &str, verdicts: &[Verdict]) -> Self {
         let cells = verdicts.iter().copied().take(self.columns.len()).collect();
         self.rows.push((claim.into(), cells));
@@ -84,14 +101,12 @@ impl VerdictMatrix {
 
     /// Adds claims that have one verdict in all columns, as a line of text
     /// below the rows.
-    #[must_use]
     pub fn throughout(mut self, verdict: Verdict, claims: &str) -> Self {
         self.throughout.push((verdict, claims.into()));
         self
     }
 
     /// Adds a remark below everything.
-    #[must_use]
     pub fn note(mut self, text: &str) -> Self {
         self.notes.push(text.into());
         self
@@ -99,7 +114,6 @@ impl VerdictMatrix {
 
     /// The table as a figure of its own, as high as it needs to be: one column
     /// wide if that holds its cells, else two, or wider if it has very many.
-    #[must_use]
     pub fn figure(self) -> Figure {
         let narrow = MatrixLayout::new(&self, SINGLE_COLUMN_MM);
         let (page_mm, layout) = if narrow.fits(SINGLE_COLUMN_MM) {

@@ -1,13 +1,13 @@
-//! A labelled drawing of the apparatus, as wide as one column.
+//! A drawing of the apparatus, as wide as one column: parts have numbers, and a key below names
+//! them.
 
 use crate::draw::{Colour, PT_PER_MM, Paint, PathData, Point, Rect, Svg};
 use crate::figure::{Figure, SINGLE_COLUMN_MM};
-use crate::rig_labels::{Labels, Stacked};
 use crate::text::{Anchor, LEAST_SIZE, TextLine, wrap};
 
 /// The end that closes the row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FarEnd {
+pub enum RigEnd {
     /// A half-bead fixed to the stop.
     #[default]
     HalfBead,
@@ -42,7 +42,7 @@ pub struct RigDrawing {
     /// Angle of the track above the horizontal in degrees, rising away from the wall.
     pub incline_deg: f64,
     /// The far end.
-    pub far_end: FarEnd,
+    pub far_end: RigEnd,
     /// A sensor between the far end and the stop.
     pub wall_sensor: bool,
     /// Launches the striker.
@@ -65,22 +65,21 @@ pub struct RigDrawing {
 }
 
 /// Width of the drawing in points; the beads' centres are at height 0.
-pub(crate) const WIDTH: f64 = SINGLE_COLUMN_MM * PT_PER_MM - 6.0;
-pub(crate) const FONT: f64 = 7.0;
-pub(crate) const INK: Colour = Colour::grey(60);
+const WIDTH: f64 = SINGLE_COLUMN_MM * PT_PER_MM - 6.0;
+const FONT: f64 = 7.0;
+/// Distance of lines of the key, and of rows of numbers.
+const LEADING: f64 = 8.8;
+const INK: Colour = Colour::grey(60);
 const BODY: Colour = Colour(214, 217, 222);
 const DARK: Colour = Colour(150, 156, 164);
-const STEEL: Colour = Colour(176, 184, 194);
+const STEEL: Colour = Colour(190, 197, 206);
 const OIL: Colour = Colour(224, 160, 30);
 /// A piezoelectric disc.
 const PIEZO: Colour = Colour(150, 40, 110);
 
-/// Labels above begin here: over the row, or over the recorder.
-const ROOF: f64 = -30.0;
-const OVER_RECORDER: f64 = -58.0;
-/// Room for the remark at the bottom.
-const REMARK: f64 = 17.0;
-
+/// The lowest row of numbers above begins here, and the recorder stands here.
+const ROOF: f64 = -44.0;
+const RECORDER: f64 = -36.0;
 /// Beads are drawn between these diameters, points.
 const SMALLEST: f64 = 11.0;
 const LARGEST: f64 = 24.0;
@@ -102,42 +101,49 @@ const BAR: f64 = 9.0;
 
 impl RigDrawing {
     /// The drawing as a figure of its own, one column wide.
-    #[must_use]
     pub fn figure(self) -> Figure {
-        let (above, below) = self.extent(&Drawing::new(&self).stacked());
+        let (above, below) = self.drawn(&mut Svg::new());
         Figure::single_column((above + below + 6.0) / PT_PER_MM).panel(self)
     }
 
     /// Draws the rig, shrunk to fit the frame.
     pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
-        let labels = Drawing::new(self).stacked();
-        let (above, below) = self.extent(&labels);
+        let (above, below) = self.drawn(&mut Svg::new());
         let fit = (frame.width() / WIDTH).min(frame.height() / (above + below));
         // The page was made for it up to rounding.
         let scale = if fit > 0.999 { 1.0 } else { fit };
         svg.open_scaled(Point::new(frame.x0, frame.y0 + scale * above), scale);
-        let drawing = Drawing::new(self);
-        drawing.draw(svg);
-        labels.draw(svg, self.roof(), drawing.floor());
-        drawing.draw_wires(svg);
-        let mut remark = String::from("Not to scale");
-        if self.incline_deg != 0.0 && self.incline_deg.is_finite() {
-            let angle = self.incline_deg;
-            remark += &format!("; the track, drawn level, is inclined by $\\alpha$ = {angle}°");
-        }
-        let line = TextLine::new(&format!("{remark}."), 6.4).shrunk_to(WIDTH);
-        line.draw(svg, Point::new(0.0, below - 3.0), Anchor::LEFT, Colour::grey(100));
+        self.drawn(svg);
         svg.close();
     }
 
-    /// Room above and below the beads' centres.
-    fn extent(&self, labels: &Stacked) -> (f64, f64) {
-        let (above, below) = labels.heights();
-        (above - self.roof(), Drawing::new(self).floor() + below + REMARK)
-    }
-
-    const fn roof(&self) -> f64 {
-        if self.recorder.is_empty() { ROOF } else { OVER_RECORDER }
+    /// Draws everything and returns the room above and below the beads' centres.
+    fn drawn(&self, svg: &mut Svg) -> (f64, f64) {
+        let drawing = Drawing::new(self);
+        let mut labels = Vec::new();
+        drawing.draw_track(svg);
+        drawing.draw_launcher(svg, &mut labels);
+        drawing.draw_row(svg, &mut labels);
+        drawing.draw_far_end(svg, &mut labels);
+        drawing.draw_recorder(svg, &mut labels);
+        drawing.draw_contacts(svg, &mut labels);
+        let floor = drawing.radius() + 16.0;
+        let [below, above] = draw_numbers(svg, &labels, [floor, ROOF]);
+        let mut key = String::new();
+        for (i, label) in labels.iter().enumerate() {
+            key += &format!("{}\u{a0}{}; ", i + 1, label.text);
+        }
+        key += "not to scale";
+        if self.incline_deg != 0.0 && self.incline_deg.is_finite() {
+            let angle = self.incline_deg;
+            key += &format!("; the track, drawn level, is inclined by $\\alpha$ = {angle}°");
+        }
+        let lines = wrap(&(key + "."), FONT, WIDTH, 40);
+        for (i, line) in lines.iter().enumerate() {
+            let at = Point::new(0.0, below + LEADING * (i as f64 + 1.0));
+            line.draw(svg, at, Anchor::LEFT, Colour::BLACK);
+        }
+        (-above, below + LEADING * lines.len() as f64 + 3.0)
     }
 
     /// The sensor bead if it is in the row.
@@ -152,15 +158,51 @@ impl RigDrawing {
 
     /// Width of the half-bead in diameters.
     fn half_bead(&self) -> f64 {
-        if self.far_end == FarEnd::HalfBead { 0.5 } else { 0.0 }
+        if self.far_end == RigEnd::HalfBead { 0.5 } else { 0.0 }
     }
 
     /// Width of the wall's sensor, and of stop and structure.
     fn end_widths(&self) -> (f64, f64) {
-        let closed = self.far_end != FarEnd::Open;
+        let closed = self.far_end != RigEnd::Open;
         let stop = closed && !self.stop.is_empty();
         (sum(&[(self.wall_sensor && closed, SENSOR)]), sum(&[(stop, STOP), (closed, STRUCTURE)]))
     }
+}
+
+/// A part of the drawing with its name, and whether its number stands above.
+struct PartLabel {
+    at: Point,
+    is_above: bool,
+    text: String,
+}
+
+fn label(labels: &mut Vec<PartLabel>, (x, y): (f64, f64), is_above: bool, text: &str) {
+    labels.push(PartLabel { at: Point::new(x, y), is_above, text: text.to_owned() });
+}
+
+/// Draws the numbers of all parts below and above the row, a row of numbers further out where two
+/// would touch, and returns where the outermost rows end.
+fn draw_numbers(svg: &mut Svg, labels: &[PartLabel], edges: [f64; 2]) -> [f64; 2] {
+    let mut rows: [Vec<f64>; 2] = Default::default();
+    let mut order: Vec<usize> = (0..labels.len()).collect();
+    order.sort_by(|a, b| labels[*a].at.x.total_cmp(&labels[*b].at.x));
+    for i in order {
+        let PartLabel { at, is_above, .. } = &labels[i];
+        let side = usize::from(*is_above);
+        let out = if *is_above { -LEADING } else { LEADING };
+        let number = TextLine::new(&(i + 1).to_string(), FONT);
+        let half = 0.5 * number.width();
+        let x = at.x.clamp(half, WIDTH - half);
+        let ends = &mut rows[side];
+        let row = ends.iter().position(|end| end + 1.5 <= x - half).unwrap_or(ends.len());
+        ends.resize(ends.len().max(row + 1), 0.0);
+        ends[row] = x + half;
+        let edge = edges[side] + out * row as f64;
+        svg.segment(*at, Point::new(at.x, edge), &Paint::line(INK, 0.45));
+        svg.circle(*at, 0.9, &Paint::fill(INK));
+        number.draw(svg, Point::new(x, edge + 0.5 * out), Anchor::MIDDLE, Colour::BLACK);
+    }
+    [edges[0] + LEADING * rows[0].len() as f64, edges[1] - LEADING * rows[1].len() as f64]
 }
 
 /// Sum of the widths of what there is.
@@ -198,7 +240,7 @@ impl<'a> Drawing<'a> {
         ]);
         let (sensor, support) = rig.end_widths();
         let bar = sum(&[(!rig.bar.is_empty(), APART + BAR)]);
-        let open = sum(&[(rig.far_end == FarEnd::Open, 8.0), (true, 1.0)]);
+        let open = sum(&[(rig.far_end == RigEnd::Open, 8.0), (true, 1.0)]);
         let room = WIDTH - before - (sensor + support + bar + open);
         // Least diameter at which the longest number is legible inside a bead.
         let number = TextLine::new(&rig.beads.to_string(), LEAST_SIZE).width();
@@ -242,16 +284,6 @@ impl<'a> Drawing<'a> {
         0.5 * self.diameter
     }
 
-    /// Height of the lines that group dry and wet contacts.
-    fn brace(&self) -> f64 {
-        self.radius() + 11.0
-    }
-
-    /// Upper end of the labels below.
-    fn floor(&self) -> f64 {
-        self.brace() + 5.0
-    }
-
     /// Centre of a bead if it is drawn.
     fn bead(&self, number: usize) -> Option<f64> {
         let found = self.beads.iter().find(|(n, _)| *n == number);
@@ -267,26 +299,10 @@ impl<'a> Drawing<'a> {
         before.or_else(after).or_else(elision).unwrap_or(self.start)
     }
 
-    /// Places of the labels, which do not depend on where they are drawn.
-    fn stacked(&self) -> Stacked {
-        self.draw(&mut Svg::new()).stacked()
-    }
-
-    /// Everything but wires, remark and labels, which are returned.
-    fn draw(&self, svg: &mut Svg) -> Labels {
-        let mut labels = Labels::default();
-        self.draw_track(svg);
-        self.draw_launcher(svg, &mut labels);
-        self.draw_row(svg, &mut labels);
-        self.draw_far_end(svg, &mut labels);
-        self.draw_braces(svg, &mut labels);
-        labels
-    }
-
     /// The air track below everything, with its holes.
     fn draw_track(&self, svg: &mut Svg) {
         let top = self.radius() + 0.3;
-        let open = sum(&[(self.rig.far_end == FarEnd::Open, 8.0)]);
+        let open = sum(&[(self.rig.far_end == RigEnd::Open, 8.0)]);
         let length = self.face + open - self.left;
         block(svg, (self.left, top), (length, 4.5), BODY);
         let mut holes = PathData::new();
@@ -298,14 +314,14 @@ impl<'a> Drawing<'a> {
     }
 
     /// Actuator, striker, repositioner, photogate and springs, from left to right.
-    fn draw_launcher(&self, svg: &mut Svg, labels: &mut Labels) {
+    fn draw_launcher(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
         let (rig, r) = (self.rig, self.radius());
         let mut x = self.left + 1.0;
         if !rig.actuator.is_empty() {
             block(svg, (x, -8.0), (22.0, 16.0), DARK);
             block(svg, (x + 22.0, -1.4), (ACTUATOR - 25.0, 2.8), BODY);
             block(svg, (x + ACTUATOR - 3.5, -0.7 * r), (1.8, 1.4 * r), INK);
-            labels.above(Point::new(x + 10.0, -6.0), &rig.actuator);
+            label(labels, (x + 10.0, -6.0), true, &rig.actuator);
             x += ACTUATOR;
         }
         let ratio = rig.striker_ratio.filter(|ratio| ratio.is_finite());
@@ -315,52 +331,39 @@ impl<'a> Drawing<'a> {
         if rig.striker_ratio.is_some() {
             draw_bead(svg, centre, radius);
             draw_arrow(svg, Point::new(centre.x + radius + 1.2, centre.y), 9.0);
-            let at = Point::new(centre.x, centre.y + 0.8 * radius);
-            labels.below(at, &with_comma("striker", &rig.striker_label));
+            let at = (centre.x, centre.y + 0.8 * radius);
+            label(labels, at, false, &with_comma("striker", &rig.striker_label));
         }
         if !rig.repositioner.is_empty() {
-            let (reach, shoulder, rail) = (radius + 1.3, centre.y - radius - 2.2, -22.0);
-            let foot = centre.y - 0.35 * radius;
-            let sides = [-reach, reach].map(|dx| centre.x + dx);
-            let fork =
-                [(sides[0], foot), (sides[0], shoulder), (sides[1], shoulder), (sides[1], foot)];
-            polyline(svg, &fork, &Paint::line(Colour::GREEN, 1.2));
-            polyline(
-                svg,
-                &[(centre.x, shoulder), (centre.x, rail)],
-                &Paint::line(Colour::GREEN, 1.2),
-            );
-            polyline(
-                svg,
-                &[(centre.x - 12.0, rail), (centre.x + 12.0, rail)],
-                &Paint::line(INK, 1.0),
-            );
-            labels.above(Point::new(centre.x, rail), &rig.repositioner);
+            let rail = -22.0;
+            let arm = [(centre.x, centre.y - radius), (centre.x, rail)];
+            polyline(svg, &arm, &Paint::line(Colour::GREEN, 1.2));
+            let ends = [(centre.x - 12.0, rail), (centre.x + 12.0, rail)];
+            polyline(svg, &ends, &Paint::line(INK, 1.0));
+            label(labels, (centre.x, rail), true, &rig.repositioner);
         }
         if !rig.photogate.is_empty() {
             let beam = [(self.gate, -r - 3.0), (self.gate, r)];
             polyline(svg, &beam, &Paint::dashed(Colour::VERMILION, 0.8, &[1.8, 1.3]));
             block(svg, (self.gate - 2.6, -r - 7.5), (5.2, 4.5), INK);
-            labels.above(Point::new(self.gate, -r - 6.0), &rig.photogate);
+            label(labels, (self.gate, -r - 6.0), true, &rig.photogate);
         }
         if !rig.springs.is_empty() {
+            let (post, end) = (self.start - 10.0, self.start + 0.32 * r);
             for y in [-0.72 * r, 0.72 * r] {
-                let (post, end) = (self.start - 10.0, self.start + 0.32 * r);
-                block(svg, (post - 1.6, y - 1.8), (1.6, 3.6), INK);
-                let turn = |i: u32| {
-                    let side = if i.is_multiple_of(2) { -1.5 } else { 1.5 };
-                    (post + (end - post) / 6.0 * (f64::from(i) + 0.5), y + side)
+                let turn = |i: u8| {
+                    let side = [0.0, 1.5, 0.0, -1.5][usize::from(i % 4)];
+                    (post + (end - post) / 12.0 * f64::from(i), y + side)
                 };
-                let turns: Vec<(f64, f64)> = (0..6).map(turn).collect();
-                let spring = [&[(post, y)], &turns[..], &[(end, y)]].concat();
+                let spring: Vec<(f64, f64)> = (0..=12).map(turn).collect();
                 polyline(svg, &spring, &Paint::line(Colour::BLUE, 0.7));
             }
-            labels.above(Point::new(self.start - 4.0, -0.72 * r), &rig.springs);
+            label(labels, (self.start - 4.0, -0.72 * r), true, &rig.springs);
         }
     }
 
     /// Oil, beads, sensor bead and elisions.
-    fn draw_row(&self, svg: &mut Svg, labels: &mut Labels) {
+    fn draw_row(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
         let (rig, r) = (self.rig, self.radius());
         for (i, (number, x)) in self.beads.iter().enumerate() {
             let next = self.beads.get(i + 1).map(|(n, _)| *n);
@@ -380,7 +383,7 @@ impl<'a> Drawing<'a> {
                 if !rig.sensor_label.is_empty() {
                     text += &format!(" with {}", rig.sensor_label);
                 }
-                labels.below(Point::new(*x, 0.9 * r), &text);
+                label(labels, (*x, 0.9 * r), false, &text);
                 continue;
             }
             let line = TextLine::new(&number.to_string(), LEAST_SIZE);
@@ -398,33 +401,32 @@ impl<'a> Drawing<'a> {
         if let Some((_, x)) = others.find(|(n, _)| *n > 1) {
             let noun = if rig.beads == 1 { "bead" } else { "beads" };
             let text = with_comma(&format!("{} {noun}", rig.beads), &rig.bead_label);
-            labels.above(Point::new(*x, -0.8 * r), &text);
+            label(labels, (*x, -0.8 * r), true, &text);
         }
     }
 
     /// Half-bead, sensor, stop, end structure and the bar apart from them.
-    fn draw_far_end(&self, svg: &mut Svg, labels: &mut Labels) {
+    fn draw_far_end(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
         let (rig, r) = (self.rig, self.radius());
-        if rig.far_end == FarEnd::HalfBead {
+        if rig.far_end == RigEnd::HalfBead {
             let (x, radius) = (self.end + r, r - 0.25);
             let mut half = PathData::new();
             half.move_to(Point::new(x, radius)).arc_to(radius, false, true, Point::new(x, -radius));
-            let shade = svg.ball_gradient(STEEL);
-            svg.path(half.close(), &Paint::gradient(&shade).outlined(INK, 0.5));
-            labels.below(Point::new(self.end + 0.45 * r, 0.5 * r), "half-bead");
+            svg.path(half.close(), &Paint::fill(STEEL).outlined(INK, 0.5));
+            label(labels, (self.end + 0.45 * r, 0.5 * r), false, "half-bead");
         }
-        if rig.far_end != FarEnd::Open {
+        if rig.far_end != RigEnd::Open {
             if rig.wall_sensor {
                 let disc = Rect::sized(self.face - 3.3, -0.97 * r, 2.8, 1.94 * r);
                 svg.rect(&disc, &Paint::fill(PIEZO));
                 let name = [rig.sensor_label.as_str(), "wall sensor"];
                 let name = name.into_iter().find(|name| !name.is_empty());
-                labels.below(Point::new(self.face - 1.8, 0.8 * r), name.unwrap_or_default());
+                label(labels, (self.face - 1.8, 0.8 * r), false, name.unwrap_or_default());
             }
             let mut x = self.face;
             if !rig.stop.is_empty() {
                 block(svg, (x, -r), (STOP, 2.0 * r + 4.8), DARK);
-                labels.below(Point::new(x + 0.6 * STOP, 0.6 * r), &rig.stop);
+                label(labels, (x + 0.6 * STOP, 0.6 * r), false, &rig.stop);
                 x += STOP;
             }
             block(svg, (x, -18.0), (self.back - x, 22.8 + r), BODY);
@@ -432,29 +434,24 @@ impl<'a> Drawing<'a> {
                 "" => "rigid wall",
                 name => name,
             };
-            labels.above(Point::new(0.5 * (x + self.back), -15.0), name);
+            label(labels, (0.5 * (x + self.back), -15.0), true, name);
         }
         if !rig.bar.is_empty() {
             let x = self.back + APART;
             block(svg, (x, -16.0), (BAR, 20.8 + r), DARK);
-            labels.above(Point::new(x + 0.5 * BAR, -13.5), &rig.bar);
+            label(labels, (x + 0.5 * BAR, -13.5), true, &rig.bar);
         }
     }
 
     /// Lines under the row that say which contacts are dry and which wet.
-    fn draw_braces(&self, svg: &mut Svg, labels: &mut Labels) {
-        let y = self.brace();
+    fn draw_contacts(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
+        let y = self.radius() + 11.0;
         for (first, last, wet) in groups(self.rig) {
             let from = self.contact(first) - 0.22 * self.diameter;
             let to = self.contact(last) + 0.22 * self.diameter;
             let colour = if wet { OIL.mixed(Colour::BLACK, 0.35) } else { INK };
             let corners = [(from, y - 3.0), (from, y), (to, y), (to, y - 3.0)];
             polyline(svg, &corners, &Paint::line(colour, 0.9));
-            // Away from the sensor's leader if that runs through the middle.
-            let middle = 0.5 * (from + to);
-            let sensor = self.rig.sensor().and_then(|n| self.bead(n));
-            let sensor = sensor.filter(|x| (x - middle).abs() < 8.0);
-            let x = sensor.map_or(middle, |x| (x + 8.0).min(0.5 * (middle + to)));
             let contacts = match first == last {
                 true => format!("contact {first}"),
                 false => format!("contacts {first}–{last}"),
@@ -464,45 +461,28 @@ impl<'a> Drawing<'a> {
                 (true, "") => format!("{contacts} wet"),
                 (true, liquid) => format!("{contacts} wet: {liquid}"),
             };
-            labels.coloured(Point::new(x, y), &text, colour);
+            label(labels, (0.5 * (from + to), y), false, &text);
         }
     }
 
     /// The recorder above the row and a wire to every sensor.
-    fn draw_wires(&self, svg: &mut Svg) {
-        /// Widest line: the box stays between the leaders at its sides.
-        const WIDEST: f64 = 84.0;
-        const LEADING: f64 = 8.4;
-        const PADDING: f64 = 4.0;
-        let (rig, top) = (self.rig, OVER_RECORDER + 5.0);
+    fn draw_recorder(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
+        let rig = self.rig;
         let inside = rig.sensor().and_then(|n| self.bead(n));
-        let wall = rig.wall_sensor && rig.far_end != FarEnd::Open;
+        let wall = rig.wall_sensor && rig.far_end != RigEnd::Open;
         let ends: Vec<f64> = inside.into_iter().chain(wall.then_some(self.face - 1.8)).collect();
         let (Some(first), Some(last), false) = (ends.first(), ends.last(), rig.recorder.is_empty())
         else {
             return;
         };
-        let lines = wrap(&rig.recorder, FONT, WIDEST, 3);
-        let widest = lines.iter().map(TextLine::width).fold(0.0, f64::max);
-        let width = widest + 2.0 * PADDING;
-        // Leaders of what stands behind the row pass on its right.
-        let left = (0.5 * (first + last - width)).min(last + PADDING - width);
-        let left = left.clamp(0.0, (WIDTH - width).max(0.0));
-        let case = Rect::sized(left, top, width, LEADING * lines.len() as f64 + PADDING);
+        let (middle, y) = (0.5 * (first + last), RECORDER + 5.0);
         for x in &ends {
-            // Straight up into the box, or up and across into its side.
-            let (height, across) = match *x > case.x0 + 1.0 && *x < case.x1 - 1.0 {
-                true => (case.y1, *x),
-                false => (case.centre().y, x.clamp(case.x0, case.x1)),
-            };
-            let wire = [(*x, -0.97 * self.radius()), (*x, height), (across, height)];
+            let wire = [(*x, -0.97 * self.radius()), (*x, y), (middle, y)];
             polyline(svg, &wire, &Paint::line(PIEZO, 0.8));
         }
+        let case = Rect::sized(middle - 9.0, RECORDER, 18.0, 10.0);
         svg.rect(&case, &Paint::fill(Colour::WHITE).outlined(PIEZO, 0.8));
-        for (i, line) in lines.iter().enumerate() {
-            let middle = top + 0.5 * PADDING + LEADING * (i as f64 + 0.5);
-            line.draw(svg, Point::new(case.centre().x, middle), Anchor::MIDDLE, Colour::BLACK);
-        }
+        label(labels, (middle, RECORDER + 3.0), true, &rig.recorder);
     }
 }
 
@@ -520,10 +500,8 @@ fn polyline(svg: &mut Svg, points: &[(f64, f64)], paint: &Paint) {
     svg.path(PathData::new().polyline(&points), paint);
 }
 
-/// A shaded ball.
 fn draw_bead(svg: &mut Svg, centre: Point, radius: f64) {
-    let shade = svg.ball_gradient(STEEL);
-    svg.circle(centre, radius - 0.25, &Paint::gradient(&shade).outlined(INK, 0.5));
+    svg.circle(centre, radius - 0.25, &Paint::fill(STEEL).outlined(INK, 0.5));
 }
 
 /// A meniscus around the contact of two balls at `x`: waisted, widest where it wets them.
@@ -570,7 +548,7 @@ fn runs(rig: &RigDrawing, capacity: usize) -> Vec<(usize, usize)> {
 /// Neighbouring contacts of one kind: first, last, wet.
 fn groups(rig: &RigDrawing) -> Vec<(usize, usize, bool)> {
     let begin = usize::from(rig.striker_ratio.is_none());
-    let end = rig.beads.saturating_sub(usize::from(rig.far_end == FarEnd::Open));
+    let end = rig.beads.saturating_sub(usize::from(rig.far_end == RigEnd::Open));
     let wet = match rig.wet_contacts {
         Some((a, b)) if a <= b && a <= end && b >= begin => (a.max(begin), b.min(end) + 1),
         _ => (end + 1, end + 1),

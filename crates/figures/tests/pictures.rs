@@ -5,7 +5,7 @@ use crate::covered::covered;
 use crate::type_size::smallest_type;
 use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
 use hertzchain_figures::{
-    Chart, Colour, ColourMap, Dash, FarEnd, Figure, HeatMap, Marker, RigDrawing, Series, Verdict,
+    Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, RigDrawing, RigEnd, Series, Verdict,
     VerdictMatrix,
 };
 use proptest::prelude::*;
@@ -35,7 +35,7 @@ fn every_kind() -> Vec<Figure> {
     };
     vec![
         Figure::single_column(60.0).panel(wave()),
-        Figure::single_column(60.0).panel(wave().inset(wave())),
+        Figure::single_column(60.0).panel(wave().note("a note")),
         Figure::double_column(90.0)
             .columns(2)
             .letters()
@@ -130,7 +130,7 @@ fn legends_of_crowded_and_filled_charts_cover_nothing() {
     let heat = HeatMap::new(2, 1, &[-1.0, 1.0]);
     let map = Chart::new("Time (µs)", "Bead").heat(heat);
     let map = map.with(Series::line("front", &[0.0, 1.0], &[0.0, 1.0]));
-    let mut charts = vec![filled, map, wave().inset(wave())];
+    let mut charts = vec![filled, map, wave().note("a note")];
     charts.extend([1, 4, 9].map(crowded));
     charts.extend([1, 4, 9].map(|names| crowded(names).y_range(-0.9, 0.9)));
     for chart in charts {
@@ -359,7 +359,7 @@ proptest! {
         if logs.1 { chart = chart.y_log() }
         if let Some((a, b)) = range { chart = chart.x_range(a, b) }
         let figure = Figure::new(size.0.max(45.0), size.1.max(35.0)).letters();
-        let svg = figure.panel(chart.clone().inset(chart)).svg_outlined();
+        let svg = figure.panel(chart).svg_outlined();
         check(&svg);
         check_legible(&svg);
     }
@@ -388,7 +388,7 @@ proptest! {
             wet_contacts: wet.map(|(a, b)| (a.into(), b.into())),
             liquid: named(flags[4], "motor oil SAE 0W-30"),
             incline_deg: metres,
-            far_end: [FarEnd::HalfBead, FarEnd::Plane, FarEnd::Open][end],
+            far_end: [RigEnd::HalfBead, RigEnd::Plane, RigEnd::Open][end],
             wall_sensor: flags[3],
             actuator: named(flags[5], "voice-coil actuator"),
             repositioner: named(flags[2], "ball repositioner"),

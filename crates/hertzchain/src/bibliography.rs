@@ -44,7 +44,7 @@ pub struct Work {
 
 impl Work {
     /// The work with this key.
-    pub fn of_key(key: &str) -> Option<Self> {
+    pub(crate) fn of_key(key: &str) -> Option<Self> {
         let entry = entry(key)?;
         let field = |name: &str| field(entry, name);
         let authors = field("author")?;

@@ -150,7 +150,6 @@ fn called(problem: &CurveProblem, at: usize, aim: &Aim) -> (String, String) {
 
 impl DesignResult {
     /// What can't be tightened, and what is in its place, one sentence a line.
-    #[must_use]
     pub fn unidentifiable(&self, problem: &CurveProblem) -> Vec<String> {
         let open = self.design.open.iter().map(|words| {
             format!("Nothing that could be measured determines this combination: {words}")
@@ -178,7 +177,6 @@ impl DesignResult {
 }
 
 /// Everything, in SI.
-#[must_use]
 pub fn json(problem: &CurveProblem, run_design: &DesignResult) -> Value {
     let (candidates, found) = (&run_design.candidates, &run_design.design);
     let finite = |x: f64| x.is_finite().then_some(x);
@@ -205,7 +203,6 @@ pub fn json(problem: &CurveProblem, run_design: &DesignResult) -> Value {
 }
 
 /// Every table: files' names and what stands in them.
-#[must_use]
 pub fn tables(run_design: &DesignResult) -> Vec<(&'static str, String)> {
     let found = &run_design.design;
     vec![

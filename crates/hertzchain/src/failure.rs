@@ -1,7 +1,7 @@
 //! What went wrong, described to people.
 
 use crate::options::{SimulationOptions as How, has_unit};
-use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, UnknownPreset, Warning};
+use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, UnknownName, Warning};
 use hertzchain_infer::InferError;
 use hertzchain_sim::{StudyError, parse_speed};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
@@ -39,8 +39,8 @@ impl From<StudyError> for Failure {
     }
 }
 
-impl From<UnknownPreset> for Failure {
-    fn from(error: UnknownPreset) -> Self {
+impl From<UnknownName> for Failure {
+    fn from(error: UnknownName) -> Self {
         Self::User(error.to_string())
     }
 }
@@ -62,7 +62,6 @@ impl std::error::Error for Failure {}
 impl Failure {
     /// What kept a shot from being computed, at the place in the experiment
     /// that has to do with it; what the command line asks for has no place.
-    #[must_use]
     pub fn of_shot(experiment: &Experiment, how: &How, error: StudyError) -> Self {
         let asked = how.solver.is_some() || how.step.is_some() || how.accuracy.is_some();
         match &error {
@@ -75,7 +74,6 @@ impl Failure {
 
     /// Mistakes at a speed that an option gave: what would underline the speed
     /// in the file is described of the option instead.
-    #[must_use]
     pub fn at_option(option: &str, mistakes: Mistakes) -> Self {
         match of_speed(&mistakes) {
             Some(text) => Self::User(format!("{option}: {text}")),
@@ -84,7 +82,6 @@ impl Failure {
     }
 
     /// What people are described, with marks in colour or plain.
-    #[must_use]
     pub fn report(&self, colour: bool) -> String {
         match self {
             Self::Mistakes(mistakes) => findings(mistakes.findings(), "mistakes", colour),
@@ -120,7 +117,6 @@ fn findings(findings: &[Finding], kind: &str, colour: bool) -> String {
 const LONGEST_LINE: usize = 2000;
 
 /// A report that underlines the offending text.
-#[must_use]
 pub fn report(finding: &Finding, colour: bool) -> String {
     let mut text = String::new();
     if fits(finding) && handler(colour).render_report(&mut text, finding).is_ok() {
@@ -152,7 +148,6 @@ fn placeless(finding: &Finding) -> String {
 }
 
 /// A mistake that is the speed's own, without a place.
-#[must_use]
 pub fn of_speed(mistakes: &Mistakes) -> Option<String> {
     match mistakes.findings() {
         [finding] if underlines_speed(finding) => Some(placeless(finding)),
@@ -170,8 +165,7 @@ fn underlines_speed(finding: &Finding) -> bool {
 }
 
 /// Warnings at a speed that an option gave, as [`Failure::at_option`].
-#[must_use]
-pub fn option_warnings(option: &str, warnings: &[Warning], colour: bool) -> String {
+pub(crate) fn option_warnings(option: &str, warnings: &[Warning], colour: bool) -> String {
     let (line, file): (Vec<Warning>, Vec<Warning>) =
         warnings.iter().cloned().partition(underlines_speed);
     let mut text = self::warnings(&file, colour);
@@ -182,7 +176,6 @@ pub fn option_warnings(option: &str, warnings: &[Warning], colour: bool) -> Stri
 }
 
 /// What is odd about an experiment, each with the odd text underlined.
-#[must_use]
 pub fn warnings(warnings: &[Warning], colour: bool) -> String {
     findings(warnings, "warnings", colour)
 }

@@ -19,7 +19,7 @@ pub fn open(input: &Input) -> Result<Experiment, Failure> {
 }
 
 /// The same with another preset where neither is named.
-pub fn open_or(input: &Input, usual: &str) -> Result<Experiment, Failure> {
+pub(crate) fn open_or(input: &Input, usual: &str) -> Result<Experiment, Failure> {
     match (&input.file, &input.preset) {
         (Some(file), _) => open_file(file),
         (None, name) => {
@@ -30,7 +30,6 @@ pub fn open_or(input: &Input, usual: &str) -> Result<Experiment, Failure> {
 
 /// That an experiment which was not named is the paper's dry chain: the first line of what
 /// comes of it.
-#[must_use]
 pub fn assumed(input: &Input) -> Option<String> {
     let is_named = input.file.is_some() || input.preset.is_some();
     (!is_named).then(|| assumed_preset("experiment", "dry chain", USUAL, "FILE or --preset NAME"))
@@ -71,7 +70,6 @@ pub fn at_speed<T>(given: Option<&Given>, result: Result<T, Mistakes>) -> Result
 }
 
 /// The option by which a speed was given.
-#[must_use]
 pub fn option(given: &Given) -> String {
     format!("--speed {}", given.text())
 }
@@ -87,7 +85,7 @@ pub fn check_times(how: &How, experiment: &Experiment) -> Result<(), Failure> {
 }
 
 /// The environment variable that chooses vector instructions.
-pub const INSTRUCTION_SET: &str = "HERTZCHAIN_INSTRUCTION_SET";
+pub(crate) const INSTRUCTION_SET: &str = "HERTZCHAIN_INSTRUCTION_SET";
 
 /// Vector instructions: the best this machine has, or those asked for.
 pub fn instruction_set() -> Result<InstructionSet, Failure> {

@@ -1,5 +1,6 @@
 //! Results as JSON, full precision, SI units in the names.
 
+use crate::contact::HertzContact;
 use crate::missing;
 use hertzchain_chain::observe::{Competing, Maximum};
 use hertzchain_chain::wave::Budget;
@@ -14,23 +15,22 @@ use serde_json::{Value as Json, json};
 
 /// A maximum of a signal.
 #[derive(Serialize)]
-struct Peak {
+struct PeakView {
     time_s: f64,
     value: f64,
 }
 
-impl From<&Maximum> for Peak {
+impl From<&Maximum> for PeakView {
     fn from(maximum: &Maximum) -> Self {
         Self { time_s: maximum.time_s, value: maximum.value }
     }
 }
 
 fn peaks<S: Serializer>(maxima: &&[Maximum], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(maxima.iter().map(Peak::from))
+    serializer.collect_seq(maxima.iter().map(PeakView::from))
 }
 
 /// One shot of an experiment at a speed of its own or another.
-#[must_use]
 pub fn shot_of(experiment: &Experiment, speed_m_s: Option<f64>, plan: &Plan, shot: &Shot) -> Json {
     let view = ShotView {
         experiment: Some(experiment.name()),
@@ -52,6 +52,7 @@ struct ShotView<'a> {
     accuracy_asked: f64,
     accuracy_reached: Option<f64>,
     passage: PassageView<'a>,
+    wall_contact: Option<HertzContact>,
     #[serde(serialize_with = "peaks")]
     sensor_maxima: &'a [Maximum],
     pulse_speed_beads_per_s: Option<f64>,
@@ -79,6 +80,7 @@ impl<'a> ShotView<'a> {
             accuracy_asked: shot.accuracy_asked,
             accuracy_reached: shot.accuracy_reached,
             passage: PassageView::of(shot, units, plan),
+            wall_contact: HertzContact::of_wall(units, plan, shot),
             sensor_maxima: &shot.sensor_maxima,
             pulse_speed_beads_per_s: shot.pulse_speed_beads_s,
             striker_rebound: shot.rebound.map(ReboundView::of),
@@ -121,12 +123,12 @@ impl ReboundView {
 enum PassageView<'a> {
     Missing {
         missing: String,
-        wall: Option<Peak>,
+        wall: Option<PeakView>,
     },
     Seen {
-        incident: Peak,
-        wall: Peak,
-        reflected: Option<Peak>,
+        incident: PeakView,
+        wall: PeakView,
+        reflected: Option<PeakView>,
         search_ends_s: f64,
         #[serde(serialize_with = "others")]
         competing: &'a [Competing],
@@ -143,12 +145,12 @@ impl<'a> PassageView<'a> {
         match &shot.passage {
             Err(error) => Self::Missing {
                 missing: missing::reason(&plan.chain.far, units, error),
-                wall: shot.wall().as_ref().map(Peak::from),
+                wall: shot.wall().as_ref().map(PeakView::from),
             },
             Ok(seen) => Self::Seen {
-                incident: Peak::from(&seen.incident),
-                wall: Peak::from(&seen.wall),
-                reflected: seen.reflected.as_ref().map(Peak::from),
+                incident: PeakView::from(&seen.incident),
+                wall: PeakView::from(&seen.wall),
+                reflected: seen.reflected.as_ref().map(PeakView::from),
                 search_ends_s: seen.search_ends_s,
                 competing: &seen.competing,
                 wall_maxima: &seen.wall_maxima,
@@ -211,7 +213,6 @@ pub struct SweepView<'a> {
 
 impl<'a> SweepView<'a> {
     /// Of the shots and the results of one batch.
-    #[must_use]
     pub fn new(
         experiment: &Experiment,
         plan: &'a Plan,
@@ -248,7 +249,6 @@ impl Serialize for Points<'_> {
 }
 
 /// A sweep without its points; laws are the incident and the reflected times'.
-#[must_use]
 pub fn outline(
     experiment: &Experiment,
     calibration: Option<&Calibration>,
@@ -298,7 +298,6 @@ fn point<'a>(point: &'a BatchShot, units: Units, plan: &Plan) -> PointView<'a> {
 /// A fit of times against speed, with its standard errors and with what the
 /// accuracies of the times alone leave open. Two speeds determine no errors and no
 /// R²: null.
-#[must_use]
 pub fn fit(fit: &Result<PowerLaw, FitError>, uncertainty: Option<Uncertainty>) -> Json {
     match fit {
         Err(error) => json!({ "missing": missing::law(error) }),
@@ -319,7 +318,6 @@ pub fn fit(fit: &Result<PowerLaw, FitError>, uncertainty: Option<Uncertainty>) -
 
 /// A description: numbers as numbers. What has several of them is an object
 /// whose keys name the units.
-#[must_use]
 pub fn groups(groups: &[Group]) -> Json {
     let row = |row: &Row| json!({ "name": row.name.trim(), "value": value(&row.value), "unit": row.unit });
     let group = |group: &Group| json!({ "title": group.title, "rows": group.rows.iter().map(row).collect::<Json>() });

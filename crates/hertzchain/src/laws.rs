@@ -17,7 +17,6 @@ pub fn infos(name: Option<&str>) -> Result<Vec<&'static LawInfo>, Failure> {
 }
 
 /// Laws with equation, parameters, units and source.
-#[must_use]
 pub fn json(infos: &[&LawInfo]) -> Json {
     infos.iter().map(|info| as_json(info)).collect()
 }
@@ -28,7 +27,6 @@ fn unknown(name: &str) -> Failure {
 }
 
 /// What a law does with energy, in a word.
-#[must_use]
 pub fn nature(info: &LawInfo) -> &'static str {
     match info.nature {
         Nature::Elastic => "elastic",

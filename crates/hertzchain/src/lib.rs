@@ -28,6 +28,7 @@
 //! ```
 
 pub mod bibliography;
+mod contact;
 pub mod csv;
 pub mod design;
 pub mod failure;

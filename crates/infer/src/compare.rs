@@ -30,7 +30,6 @@ pub struct Criteria {
 impl Criteria {
     /// Of a fit by least squares; combinations of parameters that nothing determines, and
     /// parameters held by a bound, do not count.
-    #[must_use]
     pub fn new(fit: &Fit) -> Self {
         let (data, parameters) = (fit.residuals.len(), fit.rank);
         let (n, k) = (data as f64, parameters as f64);
@@ -53,7 +52,6 @@ impl Criteria {
     }
 
     /// Whether the data reject the model (p < 0.001).
-    #[must_use]
     pub fn is_rejected(&self) -> bool {
         self.chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
     }

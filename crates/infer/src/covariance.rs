@@ -38,7 +38,6 @@ const TAKES_PART: f64 = 1e-4;
 
 impl Covariance {
     /// From a fit.
-    #[must_use]
     pub fn new(parameters: &[Parameter], fit: &Fit) -> Self {
         let count = parameters.len();
         let (held, loose): (Vec<usize>, Vec<usize>) = (0..count).partition(|k| fit.is_bound(*k));
@@ -87,14 +86,12 @@ impl Covariance {
     }
 
     /// Correlation of two parameters; `None` where either has no finite, positive standard error.
-    #[must_use]
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
         let product = self.sd.get(i)? * self.sd.get(j)?;
         (product > 0.0 && product.is_finite()).then(|| self.matrix[i][j] / product)
     }
 
     /// Standard error of a quantity whose derivatives by the parameters are given.
-    #[must_use]
     pub fn sd_of(&self, derivatives: &[f64]) -> f64 {
         let parts = self.axes.iter().map(|axis| dot(axis, derivatives).powi(2));
         parts.sum::<f64>().sqrt()

@@ -26,7 +26,6 @@ impl Observable {
         [Self::Incident, Self::Reflected, Self::WallOverPassing, Self::ReturningOverPassing];
 
     /// Its column in a table.
-    #[must_use]
     pub const fn column(self) -> &'static str {
         match self {
             Self::Incident => "tof_incident_s",
@@ -37,7 +36,6 @@ impl Observable {
     }
 
     /// What it is called.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Incident => "incident ToF",
@@ -48,7 +46,6 @@ impl Observable {
     }
 
     /// Whether it is a time in s; else it is a ratio.
-    #[must_use]
     pub const fn is_time(self) -> bool {
         matches!(self, Self::Incident | Self::Reflected)
     }
@@ -79,7 +76,6 @@ impl Freedom {
     pub const KNOWN: Self = Self::of_all(f64::INFINITY);
 
     /// All errors have these degrees of freedom.
-    #[must_use]
     pub const fn of_all(freedom: f64) -> Self {
         Self { speed: freedom, values: [freedom; 4] }
     }
@@ -99,7 +95,6 @@ impl Freedom {
 /// For one error (h = 1) it is exact: ⟨χ²_ν⁻¹⟩ = 1/(ν − 2) and ⟨χ²_ν⁻²⟩ = 1/((ν − 2)(ν − 4)) make it
 /// √(ν/(ν − 4)). For several in one sum it is the same with the degrees of freedom of Welch and
 /// Satterthwaite, (Σ v)²/Σ (v²/ν) [Satterthwaite1946].
-#[must_use]
 pub fn widening(share: f64, freedom: f64) -> f64 {
     match freedom >= FEWEST {
         true => (1.0 - 4.0 * share / freedom).sqrt().recip(),
@@ -125,7 +120,6 @@ pub struct DataRow {
 
 impl DataRow {
     /// The measured value of an observable.
-    #[must_use]
     pub fn value(&self, of: Observable) -> Option<Estimate> {
         self.values[of.index()]
     }
@@ -161,19 +155,16 @@ pub struct Data {
 
 impl Data {
     /// Speeds in m/s.
-    #[must_use]
     pub fn speeds_m_s(&self) -> Vec<f64> {
         self.rows.iter().map(|row| row.speed_m_s.value).collect()
     }
 
     /// Number of measured numbers without speeds.
-    #[must_use]
     pub fn value_count(&self) -> usize {
         self.rows.iter().map(|row| row.observables().count()).sum()
     }
 
     /// Whether some row has an observable.
-    #[must_use]
     pub fn has(&self, of: Observable) -> bool {
         self.rows.iter().any(|row| row.value(of).is_some())
     }
@@ -186,20 +177,17 @@ impl Data {
     }
 
     /// Lines whose speeds have no error, or one of 0: they count as exactly known.
-    #[must_use]
     pub fn lines_of_exact_speeds(&self) -> Vec<u64> {
         self.lines(|row| row.speed_m_s.sigma == 0.0)
     }
 
     /// Lines with both times of flight whose errors have no stated correlation.
-    #[must_use]
     pub fn lines_without_correlation(&self) -> Vec<u64> {
         self.lines(|row| row.has_both_times() && row.correlation.is_none())
     }
 
     /// Lines with errors from the scatter of so few shots that intervals can't be corrected for
     /// that: their errors count as known.
-    #[must_use]
     pub fn lines_of_few_shots(&self) -> Vec<u64> {
         let few =
             |freedom: &Freedom| freedom.values.iter().chain([&freedom.speed]).any(|f| *f < FEWEST);
@@ -208,7 +196,6 @@ impl Data {
 
     /// How many rows have an error that is widened for its uncertainty, and the least and the most
     /// degrees of freedom among those errors; `None` if there is no such row.
-    #[must_use]
     pub fn widened(&self) -> Option<(usize, [f64; 2])> {
         let own = |row: &DataRow| -> Vec<f64> {
             let values = row.observables().map(|of| row.freedom.values[of.index()]);
@@ -222,7 +209,6 @@ impl Data {
     }
 
     /// These data with some observables alone; rows that have none of them go.
-    #[must_use]
     pub fn only(&self, wanted: &[Observable]) -> Self {
         let mut data = self.clone();
         for row in &mut data.rows {

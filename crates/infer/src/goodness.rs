@@ -43,7 +43,6 @@ pub(crate) fn chi_square_of(
 
 impl Goodness {
     /// Of a fit of a problem.
-    #[must_use]
     pub fn new(problem: &dyn Problem, fit: &Fit) -> Self {
         Self::with_nuisances(0, problem, fit)
     }
@@ -51,7 +50,6 @@ impl Goodness {
     /// Of a fit in whose residuals so many nuisance parameters were at their best. As many degrees
     /// of freedom are left as data and priors have numbers more than the combinations of parameters
     /// that they determine.
-    #[must_use]
     pub fn with_nuisances(nuisances: usize, problem: &dyn Problem, fit: &Fit) -> Self {
         let priors = problem.parameters().iter().zip(&fit.point);
         let priors = priors.filter_map(|(p, value)| p.prior.residual(*value));
@@ -67,7 +65,6 @@ impl Goodness {
     }
 
     /// Whether the data reject the model (p < 0.001).
-    #[must_use]
     pub fn is_rejected(&self) -> bool {
         self.chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
     }
@@ -87,7 +84,6 @@ const UNCHECKED: f64 = 1e-6;
 /// turn: with u = ∂r/∂y and H the projector on what the fitted combinations can change,
 /// uᵀ r/√(uᵀ (1 − H) u) is its distance from what is left, in standard errors [Baarda1968]. Numbers
 /// that others do not check have none.
-#[must_use]
 pub fn largest_residual(problem: &dyn Problem, fit: &Fit, of: Range<usize>) -> Option<Largest> {
     let responses = problem.responses(&fit.point).ok()?;
     let directions = directions_at(problem.parameters(), fit);
@@ -137,7 +133,6 @@ pub struct Runs {
 ///
 /// Residuals of a fit are not quite independent: with few points to a parameter the probabilities
 /// are rough.
-#[must_use]
 pub fn runs(residuals: &[f64]) -> Option<Runs> {
     let signs = residuals.iter().filter(|r| **r != 0.0).map(|r| *r > 0.0);
     let signs: Vec<bool> = signs.collect();

@@ -45,7 +45,6 @@ pub(crate) const MOVED: f64 = 1e-4;
 impl Identifiability {
     /// At a fit's optimum. `label` names a residual, as in
     /// [`Problem::residual_label`](crate::Problem::residual_label).
-    #[must_use]
     pub fn new(parameters: &[Parameter], fit: &Fit, label: impl Fn(usize) -> String) -> Self {
         let parameters = &sized(parameters, &fit.point);
         let (found, floor) = Scaled::of(parameters, &fit.jacobian).decomposed();
@@ -67,14 +66,12 @@ impl Identifiability {
     }
 
     /// How many combinations the data determine.
-    #[must_use]
     pub fn determined(&self) -> usize {
         self.singular_values.len() - self.unidentifiable.len()
     }
 
     /// Whether a parameter is not identifiable: an unidentifiable direction moves it, and its
     /// standard error (priors counted in) is as large as its size.
-    #[must_use]
     pub fn leaves_open(&self, parameter: usize, sd: f64) -> bool {
         let weak = self.singular_values.iter().zip(&self.directions);
         let mut weak = weak.filter(|(value, _)| is_weak(**value, self.floor));

@@ -71,7 +71,6 @@ const EXCLUDED_SD: f64 = 6.0;
 impl Prior {
     /// (θ − mean)/sd, of the logarithm for a log-normal prior: what a fit adds to its residuals.
     /// `None` of a flat prior; infinite where impossible.
-    #[must_use]
     pub fn residual(&self, value: f64) -> Option<f64> {
         match *self {
             Self::Flat => None,
@@ -82,7 +81,6 @@ impl Prior {
     }
 
     /// ln of the density over θ up to a constant.
-    #[must_use]
     pub fn ln_density(&self, value: f64) -> f64 {
         let square = self.residual(value).map_or(0.0, |r| -0.5 * r * r);
         match self {
@@ -102,7 +100,6 @@ impl Prior {
 }
 
 /// A name, with a unit in parentheses if there is one.
-#[must_use]
 pub fn titled(name: &str, unit: &str) -> String {
     match unit {
         "" => name.to_owned(),
@@ -112,7 +109,6 @@ pub fn titled(name: &str, unit: &str) -> String {
 
 impl Parameter {
     /// A parameter without bounds or prior, its scale the start's magnitude (1 if that is 0).
-    #[must_use]
     pub fn new(name: &str, unit: &str, start: f64) -> Self {
         Self {
             name: name.to_owned(),
@@ -126,26 +122,22 @@ impl Parameter {
     }
 
     /// Its name, with its unit in parentheses if it has one.
-    #[must_use]
     pub fn title(&self) -> String {
         titled(&self.name, &self.unit)
     }
 
     /// The same parameter, bounded.
-    #[must_use]
     pub fn within(self, lower: f64, upper: f64) -> Self {
         Self { lower, upper, ..self }
     }
 
     /// The same parameter with a prior.
-    #[must_use]
     pub fn with_prior(self, prior: Prior) -> Self {
         Self { prior, ..self }
     }
 
     /// Whether a value is within the bounds.
-    #[must_use]
-    pub fn admits(&self, value: f64) -> bool {
+    pub(crate) fn admits(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
     }
 
@@ -230,7 +222,6 @@ pub struct Residuals {
 
 impl Residuals {
     /// Residuals whose σ do not depend on the parameters.
-    #[must_use]
     pub fn new(standardised: Vec<f64>) -> Self {
         let ln_sigmas = Vec::new();
         Self { standardised, ln_sigmas }
@@ -258,7 +249,6 @@ pub struct Batch {
 impl Batch {
     /// Points in batches of at most `size`, in order. Small ones occupy more machines, large ones
     /// fill the lanes of a batch of shots: a point's curve has a lane for each speed already.
-    #[must_use]
     pub fn cut(problem: &Fingerprint, points: &[Vec<f64>], size: usize) -> Vec<Self> {
         let batch = |points: &[Vec<f64>]| {
             let inputs = Inputs::of("batch").work("problem", problem);
@@ -270,7 +260,6 @@ impl Batch {
     }
 
     /// Computes the batch here.
-    #[must_use]
     pub fn outcomes(&self, problem: &dyn Problem) -> Outcomes {
         problem.residuals(&self.points)
     }
@@ -295,7 +284,6 @@ pub struct Spread<'a> {
 
 impl<'a> Spread<'a> {
     /// Of a problem by its fingerprint, in batches of at most `size` points.
-    #[must_use]
     pub fn new(
         problem: &'a dyn Problem,
         fingerprint: Fingerprint,
@@ -307,7 +295,6 @@ impl<'a> Spread<'a> {
     }
 
     /// The same in smaller batches where so many workers would otherwise not all have one.
-    #[must_use]
     pub fn among(self, workers: usize) -> Self {
         Self { workers, ..self }
     }

@@ -65,7 +65,6 @@ pub enum End {
 
 impl End {
     /// The value if the data determine it.
-    #[must_use]
     pub fn closed(self) -> Option<f64> {
         match self {
             Self::At(value) => Some(value),
@@ -170,7 +169,7 @@ struct Walk {
     /// Where the model failed, nearest so far.
     failing: Option<f64>,
     asked: f64,
-    stop: Option<Stop>,
+    stop: Option<ProfileStop>,
 }
 
 /// A value that was met.
@@ -182,7 +181,7 @@ struct Met {
 
 /// Why a walk goes no farther out.
 #[derive(Clone, Copy)]
-enum Stop {
+enum ProfileStop {
     Risen,
     Bound,
     Far,
@@ -263,10 +262,12 @@ impl Walk {
         let (lower, upper) = self.bounds[self.parameter];
         let room = if self.side > 0.0 { upper - self.optimum() } else { self.optimum() - lower };
         self.stop = match () {
-            () if height >= goal => Some(Stop::Risen),
-            () if distance >= room => Some(Stop::Bound),
-            () if self.nears_failure(distance) => Some(Stop::Fails),
-            () if distance >= self.limit_distance || self.met.len() > self.most => Some(Stop::Far),
+            () if height >= goal => Some(ProfileStop::Risen),
+            () if distance >= room => Some(ProfileStop::Bound),
+            () if self.nears_failure(distance) => Some(ProfileStop::Fails),
+            () if distance >= self.limit_distance || self.met.len() > self.most => {
+                Some(ProfileStop::Far)
+            }
             () => None,
         };
         if self.stop.is_some() {
@@ -360,8 +361,8 @@ impl Walk {
         }
         let last = at(self.last().0);
         match self.stop {
-            Some(Stop::Bound) => End::Bound(last),
-            Some(Stop::Fails) => End::ModelFails(last),
+            Some(ProfileStop::Bound) => End::Bound(last),
+            Some(ProfileStop::Fails) => End::ModelFails(last),
             _ => End::Open(last),
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::common::{Noise, Truth, model, speeds_m_s};
 use hertzchain_experiment::preset;
-use hertzchain_infer::gauge::{Chains, Description, Gauge, Law, Oil, PowerForm, known_oils};
+use hertzchain_infer::gauge::{Chains, Description, Gauge, Oil, OilLaw, PowerForm, known_oils};
 use hertzchain_infer::{Data, Observable};
 
 /// K₀ in N/m^{3/2}, k, A₀ in s, a: a liquid whose contacts are power laws.
@@ -11,7 +11,7 @@ const MINE: [f64; 4] = [8.6e9, -0.03, 8.5e-7, -0.25];
 const INCIDENT: [Observable; 1] = [Observable::Incident];
 
 fn mine() -> Oil {
-    let law = |at: usize| Law { prefactor: MINE[at], exponent: MINE[at + 1] };
+    let law = |at: usize| OilLaw { prefactor: MINE[at], exponent: MINE[at + 1] };
     Oil {
         name: "mine".to_owned(),
         description: Description::Contact { stiffness: law(0), relaxation_s: law(2) },

@@ -15,7 +15,6 @@ const SAME: f64 = 0.5;
 ///
 /// Shots may differ, as chains with gaps do: each is weighted by its own noise, all of them by what
 /// scatters beyond noise.
-#[must_use]
 pub fn resolve_ambiguous(flights: &[&Flight]) -> Vec<Option<Flight>> {
     let mut resolved: Vec<Flight> = flights.iter().map(|flight| **flight).collect();
     for kind in [PulseKind::Incident, PulseKind::Wall, PulseKind::Reflected] {

@@ -129,7 +129,6 @@ const EXPONENT: f64 = -0.2;
 
 impl Curves {
     /// Reduces shots; those without a speed or a time are left out.
-    #[must_use]
     pub fn of(shots: &[Shot], grouping: &Grouping) -> Self {
         let mut by_name: IndexMap<&str, Vec<&Shot>> = IndexMap::new();
         for shot in shots {

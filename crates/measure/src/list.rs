@@ -78,14 +78,12 @@ impl ShotList {
     }
 
     /// The speed of a file's shot and its standard error in m/s, if the table has them.
-    #[must_use]
     pub fn speed(&self, file: &Path, shot: Option<u64>) -> Option<(f64, Option<f64>)> {
         let entry = self.find(file, shot)?;
         Some((entry.speed_m_s?, entry.speed_error_m_s))
     }
 
     /// The case of a file's shot, if the table has it.
-    #[must_use]
     pub fn case(&self, file: &Path, shot: Option<u64>) -> Option<&str> {
         self.find(file, shot)?.case.as_deref()
     }

@@ -98,7 +98,6 @@ type Done = (Shot, Option<(usize, usize)>);
 ///
 /// Holds two batches of records at a time, one being read while the other is measured: a recording
 /// may be larger than memory. Results do not depend on the number of threads.
-#[must_use]
 pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measurement {
     let mut measurement =
         Measurement { bandwidth: options.measuring.bandwidth, ..Measurement::default() };

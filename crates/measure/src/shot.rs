@@ -114,7 +114,6 @@ impl Shot {
 
     /// Whether its times may be of something else than the wave: a clipped pulse or one with a gap,
     /// pulses taken for one another or of several shots, or a missing one.
-    #[must_use]
     pub fn is_dubious(&self) -> bool {
         self.holds_several || self.gap_in_pulse || self.doubts.iter().any(QualityFlag::is_grave)
     }
@@ -125,7 +124,6 @@ impl Shot {
     }
 
     /// What is doubtful, in words.
-    #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
         if let (Some(Estimate { value, .. }), None) = (self.speed_m_s, self.true_speed()) {
@@ -154,7 +152,6 @@ impl Shot {
     }
 
     /// What is doubtful and what is missing, as one text.
-    #[must_use]
     pub fn flags(&self) -> String {
         let error = self.flight.as_ref().err().map(ToString::to_string);
         let all = self.remarks().into_iter().chain(error);

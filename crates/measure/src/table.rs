@@ -39,7 +39,6 @@ fn table(titles: Line, lines: impl Iterator<Item = Line>) -> impl Iterator<Item 
 }
 
 /// One line a shot.
-#[must_use]
 pub fn shots_csv(shots: &[Shot]) -> String {
     table(shot_line(None), shots.iter().map(|shot| shot_line(Some(shot)))).collect()
 }
@@ -89,7 +88,6 @@ fn shot_line(shot: Option<&Shot>) -> Line {
 }
 
 /// One line a case and speed; last those at which no shot counts, without times.
-#[must_use]
 pub fn speeds_csv(curves: &Curves) -> String {
     let rows = curves.cases.iter().flat_map(|case| {
         let rows = case.rows.iter();
@@ -147,7 +145,6 @@ fn speed_line(case: Option<&str>, row: Option<&SpeedRow>, none: Option<&Unmeasur
 /// One line a power law: of each case incident and reflected times of flight. It is supported or
 /// not, or that is unknown; empty without chi-square. Errors follow from those of the points; where
 /// the law is not supported, they are too small by √(chi-square/degrees of freedom).
-#[must_use]
 pub fn laws_csv(curves: &Curves) -> String {
     let lines = curves.cases.iter().flat_map(|case| {
         let laws = [("incident", &case.laws.incident), ("reflected", &case.laws.reflected)];
@@ -180,7 +177,6 @@ fn law_line(of: Option<(&Case, &str, &PowerLaw)>) -> Line {
 }
 
 /// One line a ratio; last the correlation of its error with that of the other time's ratio.
-#[must_use]
 pub fn ratios_csv(curves: &Curves) -> String {
     let mut lines = Vec::new();
     for wet in &curves.ratios {

@@ -6,8 +6,8 @@ use hertzchain_experiment::Reading;
 use hertzchain_figures::Figure;
 use hertzchain_paper::claims::{Claim, Verdict, claims};
 use hertzchain_paper::figures;
-use hertzchain_paper::readings::{Row, Scan};
-use hertzchain_paper::reproduce::{Options, PROVENANCE, Reproduction, Silent, reproduce};
+use hertzchain_paper::readings::{ReadingRow, ReadingScan};
+use hertzchain_paper::reproduce::{PROVENANCE, ReproduceOptions, Reproduction, Silent, reproduce};
 use std::collections::BTreeSet;
 
 const TABLES: [&str; 8] = [
@@ -27,7 +27,7 @@ const FIGURES: [&str; 6] = ["energy", "figure1", "figure2", "figure3", "figure4"
 fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Figure)> {
     let claims: Vec<Claim> =
         claims().unwrap().into_iter().map(|evaluator| evaluator.claim).collect();
-    let row = |reading: Reading, moved: usize| Row {
+    let row = |reading: Reading, moved: usize| ReadingRow {
         reading,
         verdicts: (0..claims.len())
             .map(|claim| match moved > 0 && claim % (moved + 2) == 1 {
@@ -45,7 +45,7 @@ fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Fi
     });
     let single = changed.enumerate();
     let single = single.map(|(i, reading)| row(reading, if i < moving { i + 1 } else { 0 }));
-    computed.scan = Some(Scan {
+    computed.scan = Some(ReadingScan {
         single: single.collect(),
         default,
         claims,
@@ -61,7 +61,7 @@ fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Fi
 
 #[test]
 fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column() {
-    let coarse = Options { accuracy: 1e-4, draws: 0, ..Options::default() };
+    let coarse = ReproduceOptions { accuracy: 1e-4, draws: 0, ..ReproduceOptions::default() };
     let mut computed = reproduce(&coarse, &Silent).unwrap();
     for (name, figure) in pictures(&mut computed, 3) {
         assert_eq!(covered(&figure.svg()).1, 0, "{name}: a legend hides data");

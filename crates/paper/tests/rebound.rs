@@ -1,7 +1,7 @@
 //! One end of a shot: the striker's rebound is the same wherever it is asked for.
 
 use hertzchain_experiment::{Experiment, Reading, preset};
-use hertzchain_paper::reproduce::{CASES, Effort, Gathering, gather};
+use hertzchain_paper::reproduce::{CASES, Cases, Effort, Gathering, gather};
 use hertzchain_sim::{Batch, BatchOptions, Column, Plan, Shard, Shot, shoot};
 
 fn plan(experiment: &Experiment, speed_m_s: f64, accuracy: f64) -> Plan {
@@ -21,12 +21,12 @@ const OF_REBOUND: f64 = 30.0;
 fn shot_sweep_and_reproduce_agree_on_the_rebound() {
     let (speeds, accuracy) = ([0.1, 0.5], 1e-6);
     let how = Gathering {
-        reading: Reading::default(),
+        cases: &Cases::new(&Reading::default()).unwrap(),
         speeds_m_s: &speeds,
         accuracy,
         effort: Effort::Checked,
     };
-    let reproduced = gather(&how, &|_, _, _| {}, &|| {}).unwrap();
+    let reproduced = gather(&how, &|| {}).unwrap();
     for case in CASES {
         let experiment = preset(case).unwrap();
         let options = BatchOptions {

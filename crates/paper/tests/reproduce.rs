@@ -2,15 +2,18 @@
 
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::{Reading, preset};
-use hertzchain_paper::claims::{Branch, Evidence, Point, Verdict, claims};
-use hertzchain_paper::readings::{Draw, DryPoisson, Prefactors, scan};
+use hertzchain_paper::claims::{Branch, Evidence, ShotPoint, Verdict, claims};
+use hertzchain_paper::readings::{Draw, DryPoisson, scan};
 use hertzchain_paper::reproduce::{Cases, SPEEDS_M_S};
-use hertzchain_paper::reproduce::{Effort, Gathering, Options, Silent, gather, oils_csv, tof_csv};
+use hertzchain_paper::reproduce::{
+    Effort, Gathering, ReproduceOptions, Silent, gather, oils_csv, tof_csv,
+};
 use hertzchain_sim::{Plan, shoot};
 
 fn gathered(speeds_m_s: &[f64], accuracy: f64, effort: Effort<'_>) -> Evidence {
-    let how = Gathering { reading: Reading::default(), speeds_m_s, accuracy, effort };
-    gather(&how, &|_, _, _| {}, &|| {}).unwrap()
+    let cases = &Cases::new(&Reading::default()).unwrap();
+    let how = Gathering { cases, speeds_m_s, accuracy, effort };
+    gather(&how, &|| {}).unwrap()
 }
 
 #[test]
@@ -37,7 +40,7 @@ fn times_of_flight_are_those_of_an_independent_integration() {
 
 #[test]
 fn every_time_of_flight_keeps_the_accuracy_that_is_asked() {
-    let asked = Options::default().accuracy;
+    let asked = ReproduceOptions::default().accuracy;
     // Speeds at which wet chains amplify errors most.
     let evidence = gathered(&[0.075, 0.2, 0.28, 1.0], asked, Effort::Checked);
     for curve in &evidence.curves {
@@ -49,7 +52,7 @@ fn every_time_of_flight_keeps_the_accuracy_that_is_asked() {
 }
 
 /// Numbers of a point with their absolute accuracies.
-fn with_accuracies(p: &Point) -> Vec<(f64, f64)> {
+fn with_accuracies(p: &ShotPoint) -> Vec<(f64, f64)> {
     let tofs = [p.tof_incident_s, p.tof_reflected_s].map(|t| (t, p.accuracy_reached * t));
     let peaks = [p.sensor_peak_n, p.wall_peak_n, p.returning_peak_n];
     let peaks = peaks.map(|peak| (peak, p.peak_accuracy * peak));
@@ -151,13 +154,10 @@ fn tables_have_a_row_for_every_case_and_speed() {
 #[test]
 fn draws_stay_within_half_a_unit_of_the_last_digit() {
     let motor = preset("motor").unwrap();
-    let (at_1, _) = motor.chain(Some(1.0)).unwrap();
-    let prefactors = Prefactors::of(&at_1);
     let mut largest = 0.0_f64;
     for index in 0..200 {
-        let mut chain = at_1.clone();
         let draw = Draw::new(7, index, DryPoisson::TwoDigits);
-        draw.change("motor", 1.0, prefactors, &mut chain);
+        let (chain, _) = draw.of("motor", &motor).unwrap().chain(Some(1.0)).unwrap();
         let bead = chain.beads[0];
         assert!((bead.mass_kg - 8.54e-3).abs() <= 0.005e-3);
         assert!((bead.radius_m - 6.35e-3).abs() <= 0.005e-3);

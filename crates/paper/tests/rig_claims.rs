@@ -3,11 +3,11 @@
 use crate::small::{TEXT, experiment};
 use hertzchain_chain::settle::State;
 use hertzchain_experiment::{Experiment, preset};
-use hertzchain_paper::claims::{Finding, Needs, Verdict};
+use hertzchain_paper::claims::{ClaimFinding, Needs, Verdict};
 use hertzchain_paper::reproduce::Silent;
 use hertzchain_paper::rig_claims::{
-    AtSpeed, Design, Evidence, FACTORS, Observed, Rig, RigClaims, claims, observe, series_csv,
-    typical,
+    FACTORS, Observed, RigClaims, RigDesign, RigEvidence, SpeedSeries, TriedRig, claims, observe,
+    series_csv, typical,
 };
 use hertzchain_sim::rig::Shot;
 
@@ -53,8 +53,8 @@ fn nowhere() -> State {
 }
 
 /// A rig that shows all that the paper says.
-fn agreeing() -> Evidence {
-    let at_speed = |speed_m_s: f64| AtSpeed {
+fn agreeing() -> RigEvidence {
+    let at_speed = |speed_m_s: f64| SpeedSeries {
         speed_m_s,
         loose: shots(speed_m_s, [3.0, 4.0], |unit, shot| {
             shot.rebound_m_s = -0.3 * speed_m_s + 0.02 * unit;
@@ -67,8 +67,8 @@ fn agreeing() -> Evidence {
         }),
     };
     let speeds = [0.08, 0.12, 0.2, 0.3, 0.5, 0.8, 1.2];
-    Evidence {
-        rigs: vec![Observed { rig: Rig::usual(), speeds: speeds.map(at_speed).to_vec() }],
+    RigEvidence {
+        rigs: vec![Observed { rig: TriedRig::usual(), speeds: speeds.map(at_speed).to_vec() }],
         wet: Vec::new(),
     }
 }
@@ -104,13 +104,13 @@ fn towards_mean(shot: &mut Shot, speed_m_s: f64) {
     shot.incident_s = mean_s + 0.01 * (shot.incident_s - mean_s);
 }
 
-fn decide(id: &str, evidence: &Evidence) -> Finding {
+fn decide(id: &str, evidence: &RigEvidence) -> ClaimFinding {
     let all = claims().unwrap();
     let evaluator = all.into_iter().find(|evaluator| evaluator.claim.id == id).unwrap();
     evaluator.decide(evidence)
 }
 
-fn broken((_, tapped, change): &(&str, bool, Change)) -> Evidence {
+fn broken((_, tapped, change): &(&str, bool, Change)) -> RigEvidence {
     let mut evidence = agreeing();
     for at in &mut evidence.rigs[0].speeds {
         let shots = if *tapped { &mut at.tapped } else { &mut at.loose };
@@ -162,7 +162,7 @@ fn gaps_of_a_millimetre_are_not_small() {
 
 #[test]
 fn what_was_not_seen_is_not_decidable() {
-    let nothing = Evidence::default();
+    let nothing = RigEvidence::default();
     let mut blind = agreeing();
     for at in &mut blind.rigs[0].speeds {
         for shot in at.tapped.iter_mut().chain(&mut at.loose) {
@@ -216,14 +216,14 @@ fn the_bootstrap_s_error_of_a_mean_is_that_of_theory() {
 
 #[test]
 fn the_design_tries_every_level_of_every_factor_about_the_preset() {
-    let design = Design::about(preset("paper").unwrap());
-    assert_eq!(design.rigs[0], Rig::usual());
+    let design = RigDesign::about(preset("paper").unwrap());
+    assert_eq!(design.rigs[0], TriedRig::usual());
     for (at, factor) in FACTORS.iter().enumerate() {
         let usual = design.experiment.get(factor.path).unwrap();
         // Rounding of a unit's conversion.
         assert!((usual - factor.usual()).abs() <= 1e-12 * usual, "{}", factor.name);
         for level in factor.levels {
-            let single = |rig: &Rig| {
+            let single = |rig: &TriedRig| {
                 let others = FACTORS.iter().enumerate().filter(|(other, _)| *other != at);
                 let mut others = others.map(|(other, factor)| rig.values[other] == factor.usual());
                 rig.values[at] == level && others.all(|usual| usual)
@@ -238,13 +238,13 @@ fn the_design_tries_every_level_of_every_factor_about_the_preset() {
 }
 
 /// Two dry rigs and a wet one with twelve beads, three speeds, three shots.
-fn small() -> Design {
-    Design {
-        rigs: vec![Rig::usual(), Rig::but(0, 0.2), Rig::with_case(1, "wet")],
+fn small() -> RigDesign {
+    RigDesign {
+        rigs: vec![TriedRig::usual(), TriedRig::but(0, 0.2), TriedRig::with_case(1, "wet")],
         speeds: 3,
         shots: 2,
         first: 1,
-        ..Design::about(experiment(&[]))
+        ..RigDesign::about(experiment(&[]))
     }
 }
 
@@ -272,7 +272,7 @@ fn a_small_design_is_run_and_judged_whatever_the_threads() {
     let [dry, wet] =
         [&evidence.rigs[0], &evidence.wet[0]].map(|seen| seen.speeds[2].tapped[0].incident_s);
     assert!((wet / dry - 1.0).abs() > 1e-3, "{dry} {wet}");
-    let only_dry = Evidence { wet: Vec::new(), ..evidence.clone() };
+    let only_dry = RigEvidence { wet: Vec::new(), ..evidence.clone() };
     let again = RigClaims::evaluate(&design, &only_dry).unwrap();
     for (one, two) in claims.evaluated.iter().zip(&again.evaluated) {
         assert_eq!(one.finding.value.to_bits(), two.finding.value.to_bits());
@@ -286,7 +286,7 @@ fn an_experiment_without_a_push_is_no_rig_to_vary() {
     let text = TEXT
         .replace("[near_end]\npush = \"spring\"\nforce = \"0.24 N\"\nstiffness = \"100 N/m\"", "");
     let design =
-        Design { experiment: Experiment::from_text("small.toml", &text).unwrap(), ..small() };
+        RigDesign { experiment: Experiment::from_text("small.toml", &text).unwrap(), ..small() };
     let error = observe(&design, &Silent).unwrap_err().to_string();
     assert!(error.contains("near_end.force"), "{error}");
 }

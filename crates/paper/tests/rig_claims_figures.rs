@@ -3,7 +3,7 @@
 use hertzchain_experiment::Experiment;
 use hertzchain_paper::figures::rig_figures;
 use hertzchain_paper::reproduce::Silent;
-use hertzchain_paper::rig_claims::{Design, Rig, RigClaims, observe};
+use hertzchain_paper::rig_claims::{RigClaims, RigDesign, TriedRig, observe};
 
 /// Lines, ticks and markers: a path may have many.
 fn marks(svg: &str) -> usize {
@@ -16,12 +16,12 @@ fn marks(svg: &str) -> usize {
 #[test]
 fn a_small_design_has_all_its_pictures() {
     let text = include_str!("../../sim/tests/small.toml");
-    let design = Design {
-        rigs: vec![Rig::usual(), Rig::but(0, 0.2), Rig::but(3, 2e-3)],
+    let design = RigDesign {
+        rigs: vec![TriedRig::usual(), TriedRig::but(0, 0.2), TriedRig::but(3, 2e-3)],
         speeds: 3,
         shots: 2,
         first: 1,
-        ..Design::about(Experiment::from_text("small.toml", text).unwrap())
+        ..RigDesign::about(Experiment::from_text("small.toml", text).unwrap())
     };
     let evidence = observe(&design, &Silent).unwrap();
     let claims = RigClaims::evaluate(&design, &evidence).unwrap();

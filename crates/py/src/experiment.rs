@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 /// What has been done to an experiment since it was read.
 #[derive(Clone, Debug, FromPyObject, IntoPyObject)]
-enum Change {
+enum ExperimentChange {
     /// Numbers set in SI.
     Numbers(Vec<(String, f64)>),
     /// Numbers set as text.
@@ -43,7 +43,7 @@ enum Change {
 pub struct Experiment {
     /// As the libraries have it.
     pub inner: experiment::Experiment,
-    changes: Vec<Change>,
+    changes: Vec<ExperimentChange>,
 }
 
 impl Experiment {
@@ -51,18 +51,18 @@ impl Experiment {
         Self { inner, changes: Vec::new() }
     }
 
-    fn changed(&self, change: Change) -> Result<Self, Failed> {
+    fn changed(&self, change: ExperimentChange) -> Result<Self, Failed> {
         let inner = match &change {
-            Change::Numbers(values) => {
+            ExperimentChange::Numbers(values) => {
                 let values: Vec<_> = values.iter().map(|(path, v)| (path.as_str(), *v)).collect();
                 self.inner.set(&values).map_err(of_path)?
             }
-            Change::Texts(values) => {
+            ExperimentChange::Texts(values) => {
                 let values = values.iter().map(|(path, v)| (path.as_str(), v.as_str()));
                 let values: Vec<_> = values.collect();
                 self.inner.set_text(&values).map_err(of_path)?
             }
-            Change::Case(name) => {
+            ExperimentChange::Case(name) => {
                 let found = self.inner.case(name);
                 found.ok_or_else(|| self.no_case(name))??
             }
@@ -130,7 +130,7 @@ impl Experiment {
     }
 
     #[staticmethod]
-    fn _restored(name: &str, text: &str, changes: Vec<Change>) -> Result<Self, Failed> {
+    fn _restored(name: &str, text: &str, changes: Vec<ExperimentChange>) -> Result<Self, Failed> {
         let read = Self::from_text(name, text)?;
         let mut changes = changes.into_iter();
         changes.try_fold(read, |experiment, change| experiment.changed(change))
@@ -207,7 +207,7 @@ impl Experiment {
     ///     Path, value in SI, SI unit.
     fn numbers(&self) -> Vec<(String, f64, String)> {
         let all = self.inner.numbers().into_iter();
-        all.map(|named| (named.path, named.value, named.unit)).collect()
+        all.filter_map(|named| Some((named.path, named.value?, named.unit))).collect()
     }
 
     /// One number in SI.
@@ -255,8 +255,8 @@ impl Experiment {
             }
         }
         let changes = [
-            (!numbers.is_empty()).then_some(Change::Numbers(numbers)),
-            (!texts.is_empty()).then_some(Change::Texts(texts)),
+            (!numbers.is_empty()).then_some(ExperimentChange::Numbers(numbers)),
+            (!texts.is_empty()).then_some(ExperimentChange::Texts(texts)),
         ];
         let mut changes = changes.into_iter().flatten();
         Ok(changes.try_fold(self.clone(), |experiment, change| experiment.changed(change))?)
@@ -278,7 +278,7 @@ impl Experiment {
     /// OptionError
     ///     A name that no case has.
     fn case(&self, name: &str) -> Result<Self, Failed> {
-        self.changed(Change::Case(name.to_owned()))
+        self.changed(ExperimentChange::Case(name.to_owned()))
     }
 
     fn __repr__(&self) -> String {

@@ -31,12 +31,12 @@ pub struct Likelihood {
 
 /// Residuals of a point with their ln σ, or why there are none.
 #[derive(FromPyObject, IntoPyObject)]
-enum Outcome {
+enum SpreadOutcome {
     Residuals(Vec<f64>, Vec<f64>),
     Failed(String),
 }
 
-impl From<Result<Residuals, ModelError>> for Outcome {
+impl From<Result<Residuals, ModelError>> for SpreadOutcome {
     fn from(outcome: Result<Residuals, ModelError>) -> Self {
         match outcome {
             Ok(found) => Self::Residuals(found.standardised, found.ln_sigmas),
@@ -45,13 +45,13 @@ impl From<Result<Residuals, ModelError>> for Outcome {
     }
 }
 
-impl From<Outcome> for Result<Residuals, ModelError> {
-    fn from(outcome: Outcome) -> Self {
+impl From<SpreadOutcome> for Result<Residuals, ModelError> {
+    fn from(outcome: SpreadOutcome) -> Self {
         match outcome {
-            Outcome::Residuals(standardised, ln_sigmas) => {
+            SpreadOutcome::Residuals(standardised, ln_sigmas) => {
                 Ok(Residuals { standardised, ln_sigmas })
             }
-            Outcome::Failed(why) => Err(ModelError(why)),
+            SpreadOutcome::Failed(why) => Err(ModelError(why)),
         }
     }
 }
@@ -87,7 +87,7 @@ impl Likelihood {
     }
 
     /// What becomes of points, in their order, computed in one thread.
-    fn outcomes(&self, py: Python<'_>, points: Vec<Vec<f64>>) -> PyResult<Vec<Outcome>> {
+    fn outcomes(&self, py: Python<'_>, points: Vec<Vec<f64>>) -> PyResult<Vec<SpreadOutcome>> {
         let wanted = self.inner.parameters().len();
         if points.iter().any(|point| point.len() != wanted) {
             let text = format!("every point has {wanted} numbers, one a free parameter");
@@ -97,7 +97,7 @@ impl Likelihood {
             let found = self.inner.residuals(&points);
             match stopped() {
                 true => Err(Failure::User(StudyError::Stopped.to_string())),
-                false => Ok(found.into_iter().map(Outcome::from).collect()),
+                false => Ok(found.into_iter().map(SpreadOutcome::from).collect()),
             }
         })
     }
@@ -136,10 +136,10 @@ impl Elsewhere {
             }
             let found = Python::attach(|py| {
                 let found = waiting.call1(py, (WAIT_S,))?;
-                found.extract::<Option<Vec<Vec<Outcome>>>>(py)
+                found.extract::<Option<Vec<Vec<SpreadOutcome>>>>(py)
             })?;
             if let Some(found) = found {
-                let batch = |found: Vec<Outcome>| found.into_iter().map(Into::into).collect();
+                let batch = |found: Vec<SpreadOutcome>| found.into_iter().map(Into::into).collect();
                 return Ok(found.into_iter().map(batch).collect());
             }
         }

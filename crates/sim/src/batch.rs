@@ -32,7 +32,6 @@ pub enum ErrorControl {
 
 impl ErrorControl {
     /// Its name, as options have it.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::PerShot => "per-shot",
@@ -67,7 +66,6 @@ pub struct BatchOptions {
 
 impl BatchOptions {
     /// What an experiment asks for, times of flight alone.
-    #[must_use]
     pub fn of(experiment: &Experiment) -> Self {
         let asked = experiment.solver();
         Self {
@@ -197,7 +195,6 @@ impl Batch {
     }
 
     /// Number of shots.
-    #[must_use]
     pub fn shots(&self) -> usize {
         self.speeds_m_s.len()
     }
@@ -205,7 +202,6 @@ impl Batch {
     /// Fingerprint of everything that its numbers follow from: the experiment, the bits of
     /// speeds and numbers, options, instruction set, this build of the program. Not of
     /// paths, times or machines.
-    #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
         *self.fingerprint.get_or_init(|| {
             // Plain numbers always have a form in JSON, from which their bits follow.
@@ -222,14 +218,12 @@ impl Batch {
     }
 
     /// A shard's name, of its file too: a hash of all its inputs.
-    #[must_use]
     pub fn name(&self, shard: Shard) -> String {
         shard_name(&self.fingerprint(), shard)
     }
 
     /// Runs a shard on all threads of the current rayon pool, and calls
     /// `progress` after every shot, from any thread.
-    #[must_use]
     pub fn run(&self, shard: Shard, progress: &(dyn Fn() + Sync)) -> BatchResult {
         self.run_each(shard, progress, |_| ()).0
     }
@@ -465,7 +459,6 @@ fn shard_name(batch: &Fingerprint, shard: Shard) -> String {
 
 impl BatchResult {
     /// Its name: a hash of all its inputs.
-    #[must_use]
     pub fn name(&self) -> String {
         shard_name(&self.batch, self.shard)
     }

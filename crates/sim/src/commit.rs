@@ -2,7 +2,6 @@
 
 /// The commit that was built and whether its files had been changed; `None`
 /// when built outside a checkout.
-#[must_use]
 pub fn commit() -> Option<String> {
     option_env!("HERTZCHAIN_COMMIT").map(str::to_owned)
 }

@@ -13,14 +13,12 @@ const SHORT: usize = 16;
 
 impl Fingerprint {
     /// The first 16 digits, for names of files.
-    #[must_use]
     pub fn short(&self) -> String {
         self.to_string().chars().take(SHORT).collect()
     }
 
     /// The fingerprint that 64 hexadecimal digits write.
-    #[must_use]
-    pub fn from_hex(text: &str) -> Option<Self> {
+    pub(crate) fn from_hex(text: &str) -> Option<Self> {
         let digits: Option<Vec<u32>> = text.chars().map(|c| c.to_digit(16)).collect();
         let pairs = digits.as_ref()?.chunks(2);
         let bytes: Vec<u8> =
@@ -30,7 +28,6 @@ impl Fingerprint {
     }
 
     /// Of the bytes of a result, to see that it is whole.
-    #[must_use]
     pub fn of_bytes(bytes: &[u8]) -> Self {
         Self(Sha256::digest(bytes).into())
     }
@@ -55,7 +52,6 @@ pub struct Inputs(Sha256);
 
 impl Inputs {
     /// Of work of a kind by this build of the program: another may make other bits.
-    #[must_use]
     pub fn of(kind: &str) -> Self {
         let inputs = Self(Sha256::new()).text("kind", kind);
         inputs
@@ -64,13 +60,11 @@ impl Inputs {
     }
 
     /// With a text.
-    #[must_use]
     pub fn text(self, name: &str, text: &str) -> Self {
         self.bytes(name, text.as_bytes())
     }
 
     /// With numbers, bit for bit.
-    #[must_use]
     pub fn numbers(self, name: &str, values: &[f64]) -> Self {
         let bytes: Vec<u8> =
             values.iter().flat_map(|value| value.to_bits().to_le_bytes()).collect();
@@ -78,19 +72,16 @@ impl Inputs {
     }
 
     /// With a whole number.
-    #[must_use]
     pub fn count(self, name: &str, count: u64) -> Self {
         self.bytes(name, &count.to_le_bytes())
     }
 
     /// With what another fingerprint stands for.
-    #[must_use]
     pub fn work(self, name: &str, of: &Fingerprint) -> Self {
         self.bytes(name, &of.0)
     }
 
     /// All of them.
-    #[must_use]
     pub fn fingerprint(self) -> Fingerprint {
         Fingerprint(self.0.finalize().into())
     }
@@ -106,7 +97,6 @@ impl Inputs {
 
 /// The commit that was built and whether its files had been changed; `None`
 /// when built outside a checkout.
-#[must_use]
 pub fn commit() -> Option<String> {
     option_env!("HERTZCHAIN_COMMIT").map(str::to_owned)
 }

@@ -74,7 +74,7 @@ fn rough(time_s: f64) -> String {
 
 /// Counts the steps of a shot, notes its progress, and ends it when it is cancelled or
 /// takes more steps than allowed.
-pub(crate) struct Counted {
+pub(crate) struct CountedShots {
     steps: u64,
     most_steps: f64,
     expected: f64,
@@ -87,7 +87,7 @@ const COUNTED: u64 = 64;
 /// Steps between notes of progress.
 const NOTED: u64 = 1024;
 
-impl Counted {
+impl CountedShots {
     pub(crate) fn new(plan: &Plan, system: &System, end: &End) -> Self {
         Self {
             steps: 0,
@@ -113,7 +113,7 @@ impl Counted {
     }
 }
 
-impl Observer for Counted {
+impl Observer for CountedShots {
     fn step(&mut self, piece: &Piece<'_>) -> Flow {
         self.steps += 1;
         if self.steps.is_multiple_of(COUNTED) {

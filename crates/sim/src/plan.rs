@@ -158,7 +158,6 @@ pub struct Plan {
 impl Plan {
     /// A shot of a chain: peaks, the adaptive solver, an accuracy of 1e-6, no
     /// budget, nothing sampled.
-    #[must_use]
     pub fn new(chain: Chain, sensor_bead: usize) -> Self {
         Self {
             chain: chain.into(),
@@ -210,14 +209,12 @@ impl Plan {
     }
 
     /// This plan for times of flight alone, without the striker's rebound.
-    #[must_use]
     pub fn for_flights(mut self) -> Self {
         self.rebound = false;
         self
     }
 
     /// This plan, timed by peaks, with all other ways to compare with.
-    #[must_use]
     pub fn comparing_picks(mut self) -> Self {
         self.pick = Pick::Peak;
         self.compare = Pick::ALL[1..].to_vec();
@@ -230,14 +227,12 @@ impl Plan {
     }
 
     /// This plan with an energy budget.
-    #[must_use]
     pub fn with_budget(mut self) -> Self {
         self.budget = true;
         self
     }
 
     /// This plan at another accuracy.
-    #[must_use]
     pub fn with_accuracy(mut self, accuracy: f64) -> Self {
         self.accuracy = accuracy;
         self
@@ -246,7 +241,6 @@ impl Plan {
     /// This plan with sensors sampled; a trace of more than
     /// [`Tracer::MOST_NUMBERS`](hertzchain_chain::observe::Tracer::MOST_NUMBERS)
     /// numbers is refused while the shot runs, since only then its end is known.
-    #[must_use]
     pub fn watching(mut self, sensors: Vec<Sensor>, interval_s: Option<f64>) -> Self {
         self.watch = Some(Watch { sensors, interval_s });
         self

@@ -3,7 +3,7 @@
 use crate::accuracy::{self, Forecast, Halvings, MOST_HALVINGS, TIGHTEST};
 use crate::duration::{self, End};
 use crate::error::StudyError;
-use crate::long_work::Counted;
+use crate::long_work::CountedShots;
 use crate::other_picks::other_picks;
 use crate::plan::{Plan, Solver, Watch};
 use crate::shot::{Rebound, Shot, ambiguous};
@@ -361,7 +361,7 @@ impl<'a> PreparedShot<'a> {
         let mut separation = Separation::default();
         let mut apart = Apart;
         let mut tracer = self.tracer().filter(|_| sampled);
-        let mut counted = Counted::new(self.plan, &self.system, &self.end);
+        let mut counted = CountedShots::new(self.plan, &self.system, &self.end);
         let mut observers: Vec<&mut dyn Observer> =
             vec![&mut counted, &mut tracker, &mut separation];
         if self.end.when_apart {

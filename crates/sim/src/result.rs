@@ -108,26 +108,22 @@ impl Rows {
     }
 
     /// How many shots.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.columns[0].len()
     }
 
     /// Whether there are none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
     /// A column.
-    #[must_use]
     pub fn column(&self, of: Column) -> &[f64] {
         &self.columns[of as usize]
     }
 
     /// Rows of parts that were dealt out like cards, the first part's first, put
     /// together again.
-    #[must_use]
     pub fn dealt(parts: &[Self]) -> Self {
         let count = parts.iter().map(Self::len).sum();
         let of = parts.len().max(1);
@@ -146,7 +142,6 @@ impl Rows {
     }
 
     /// Speeds and times of flight, incident and reflected where seen, in s.
-    #[must_use]
     pub fn flights(&self) -> Vec<(f64, f64, Option<f64>)> {
         let [speed, incident, reflected] =
             [Column::Speed, Column::Incident, Column::Reflected].map(|of| self.column(of));

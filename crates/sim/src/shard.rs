@@ -62,19 +62,16 @@ impl Shard {
     }
 
     /// Which shard it is, from 1.
-    #[must_use]
     pub fn number(self) -> usize {
         self.number
     }
 
     /// How many shards there are.
-    #[must_use]
     pub fn of(self) -> usize {
         self.of
     }
 
     /// Whether a shot or a series, by its place from 0, is in this shard.
-    #[must_use]
     pub fn holds(self, place: usize) -> bool {
         place % self.of == self.number - 1
     }

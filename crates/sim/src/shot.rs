@@ -139,7 +139,6 @@ impl Shot {
     }
 
     /// The wall's peak, with or without an incident one.
-    #[must_use]
     pub fn wall(&self) -> Option<Maximum> {
         match &self.passage {
             Ok(passage) => Some(passage.wall),
@@ -150,13 +149,11 @@ impl Shot {
 
     /// The highest maximum, over its pulse's peak, that could be the incident or the
     /// wall's peak instead.
-    #[must_use]
     pub fn competing_arrival(&self) -> Option<Maximum> {
         self.competing(&[Pulse::Incident, Pulse::Wall])
     }
 
     /// The same of the reflected pulse.
-    #[must_use]
     pub fn competing_reflected(&self) -> Option<Maximum> {
         self.competing(&[Pulse::Reflected])
     }
@@ -331,7 +328,6 @@ impl Flight {
 
     /// Largest relative difference of two flights; infinite if only one has a
     /// reflected pulse.
-    #[must_use]
     pub fn change(&self, other: &Self) -> f64 {
         let incident = relative(self.incident_s, other.incident_s);
         match (self.reflected_s, other.reflected_s) {

@@ -31,7 +31,6 @@ impl Stop {
     }
 
     /// Whether that was asked.
-    #[must_use]
     pub fn is_asked(&self) -> bool {
         self.0.asked.load(Ordering::Relaxed)
     }
@@ -42,19 +41,16 @@ impl Stop {
     }
 
     /// Steps of single shots so far, to some dozens.
-    #[must_use]
     pub fn steps(&self) -> u64 {
         self.0.steps.load(Ordering::Relaxed)
     }
 
     /// How many are done.
-    #[must_use]
     pub fn done(&self) -> u64 {
         self.0.done.load(Ordering::Relaxed)
     }
 
     /// How far long work is, in words; empty where nothing was noted.
-    #[must_use]
     pub fn note(&self) -> String {
         let note = self.0.note.lock().unwrap_or_else(PoisonError::into_inner);
         note.clone()
@@ -78,7 +74,6 @@ impl Stop {
 }
 
 /// Whether the calling thread has been asked to stop.
-#[must_use]
 pub fn stopped() -> bool {
     OWN.with(|own| own.borrow().as_ref().is_some_and(Stop::is_asked))
 }

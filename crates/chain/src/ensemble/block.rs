@@ -2,9 +2,9 @@
 
 use super::aligned::Aligned;
 use super::behind::Behind;
-use super::bodies::{Motion, Pace, Scaled, unit_per_kg};
+use super::bodies::{LaneMotion, LanePace, LaneScaled, unit_per_kg};
 use super::changes::{Changes, Opening};
-use super::column::{Column, chunks};
+use super::column::{LaneColumn, chunks};
 use super::edge::{Edge, Leading};
 use super::number::Number;
 use super::section::{Place, Sweep, section};
@@ -47,10 +47,10 @@ pub(super) struct Block<'a, N, const W: usize> {
     lanes: usize,
     set: InstructionSet,
     schedule: &'a Schedule,
-    paces: [Pace; W],
-    weights: Scaled<N, W>,
-    motion: Motion<N, W>,
-    offset_m: Column<N, W>,
+    paces: [LanePace; W],
+    weights: LaneScaled<N, W>,
+    motion: LaneMotion<N, W>,
+    offset_m: LaneColumn<N, W>,
     slightest_m: [N; W],
     /// Minus the static forces; `None` where there are none.
     at_rest: Option<Aligned<N>>,
@@ -101,12 +101,12 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         let mut loads = chains.iter().flat_map(|system| system.static_force_n.iter());
         let loaded = loads.any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;
-        let offset_m = Column::new(first.contacts(), shared, f64::NEG_INFINITY, |c, lane| {
+        let offset_m = LaneColumn::new(first.contacts(), shared, f64::NEG_INFINITY, |c, lane| {
             chains[lane].offset_m[c]
         });
         let scales: [_; W] = std::array::from_fn(|lane| systems[lane % lanes].scales());
         let slightest_m = scales.map(|scales| N::slightest_m(scales.speed_m_s * scales.time_s));
-        let paces = std::array::from_fn(|lane| Pace {
+        let paces = std::array::from_fn(|lane| LanePace {
             step_s: step_s[lane % lanes],
             ahead: ahead_of(step_s[lane % lanes] / scales[lane].time_s),
             unit_per_kg: unit_per_kg(systems[lane % lanes]),
@@ -114,15 +114,15 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         let fixed = systems.iter().all(|system| system.ends_fixed());
         let moving = bodies - usize::from(fixed);
         let window = Window::new((lanes, chains), (&x, &v), moving, whole_chain);
-        let inverse_mass = Column::new(moving, shared, 0.0, |j, lane| {
+        let inverse_mass = LaneColumn::new(moving, shared, 0.0, |j, lane| {
             chains[lane].inverse_mass[j] / unit_per_kg(chains[lane])
         });
         let mut block = Self {
             edges: Vec::with_capacity(RESERVED),
             changes: follow_changes.then(|| Changes::new(chunks::<W>(bodies, lanes))),
             window,
-            motion: Motion::new(x, v, inverse_mass, acts),
-            weights: Scaled::new(schedule.row(0), &paces),
+            motion: LaneMotion::new(x, v, inverse_mass, acts),
+            weights: LaneScaled::new(schedule.row(0), &paces),
             at_rest: loaded.then(|| Aligned::of(N::default(), flat)),
             sections: (0..first.sections.len()).map(|i| section((systems, chains), i)).collect(),
             force_n: Aligned::of(N::default(), flat + W),
@@ -174,7 +174,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             self.push(external);
         }
         if self.steps <= self.schedule.last_row() {
-            self.weights = Scaled::new(self.schedule.row(self.steps), &self.paces);
+            self.weights = LaneScaled::new(self.schedule.row(self.steps), &self.paces);
         }
         self.motion.step(simd, &self.window, self.lanes, &self.force_n, &self.weights);
         if !self.edges.is_empty() {

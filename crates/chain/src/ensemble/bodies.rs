@@ -2,7 +2,7 @@
 //! and velocities.
 
 use super::aligned::Aligned;
-use super::column::Column;
+use super::column::LaneColumn;
 use super::number::Number;
 use super::weights::{EARLIER, USED, Weights};
 use super::window::Window;
@@ -11,7 +11,7 @@ use fearless_simd::prelude::*;
 use std::ops::Range;
 
 #[derive(Debug)]
-pub(super) struct Motion<N, const W: usize> {
+pub(super) struct LaneMotion<N, const W: usize> {
     /// Predicted positions and velocities, with a chunk to spare.
     pub x: Aligned<N>,
     pub v: Aligned<N>,
@@ -19,7 +19,7 @@ pub(super) struct Motion<N, const W: usize> {
     /// at `newest`, older ones after it, round the ring.
     accelerations: [Aligned<N>; USED],
     newest: usize,
-    inverse_mass: Column<N, W>,
+    inverse_mass: LaneColumn<N, W>,
     /// Accelerations by what is not a contact, in that unit, if anything is.
     pub external: Option<Aligned<N>>,
 }
@@ -32,7 +32,7 @@ pub(super) fn unit_per_kg(system: &System) -> f64 {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pace {
+pub(super) struct LanePace {
     /// Full step in s.
     pub step_s: f64,
     /// How much a step is [ahead of](super::weights::ahead_of) the exact motion.
@@ -43,14 +43,14 @@ pub(super) struct Pace {
 
 /// Weights times powers of each lane's step and its unit of accelerations.
 #[derive(Clone, Debug)]
-pub(super) struct Scaled<N, const W: usize> {
+pub(super) struct LaneScaled<N, const W: usize> {
     drift: [N; W],
     velocity: [[N; W]; USED],
     position: [[N; W]; USED],
 }
 
-impl<N: Number<W>, const W: usize> Scaled<N, W> {
-    pub(super) fn new(weights: &Weights, paces: &[Pace; W]) -> Self {
+impl<N: Number<W>, const W: usize> LaneScaled<N, W> {
+    pub(super) fn new(weights: &Weights, paces: &[LanePace; W]) -> Self {
         let none = [N::default(); W];
         let (mut velocity, mut position) = ([none; USED], [none; USED]);
         for (lane, pace) in paces.iter().enumerate() {
@@ -66,12 +66,12 @@ impl<N: Number<W>, const W: usize> Scaled<N, W> {
     }
 }
 
-impl<N: Number<W>, const W: usize> Motion<N, W> {
+impl<N: Number<W>, const W: usize> LaneMotion<N, W> {
     /// From positions and velocities, with nothing accelerated yet.
     pub(super) fn new(
         x: Aligned<N>,
         v: Aligned<N>,
-        inverse_mass: Column<N, W>,
+        inverse_mass: LaneColumn<N, W>,
         external: bool,
     ) -> Self {
         let zeros = || Aligned::of(N::default(), x.len());
@@ -110,7 +110,7 @@ impl<N: Number<W>, const W: usize> Motion<N, W> {
         window: &Window,
         lanes: usize,
         force: &[N],
-        scaled: &Scaled<N, W>,
+        scaled: &LaneScaled<N, W>,
     ) {
         self.newest = (self.newest + USED - 1) % USED;
         let mut now = std::mem::take(&mut self.accelerations[self.newest]);
@@ -137,9 +137,9 @@ fn chunks_of_mut<N, const W: usize>(values: &mut [N], which: Range<usize>) -> &m
 #[inline(always)]
 fn fly<S: Simd, N: Number<W>, const W: usize>(
     simd: S,
-    motion: &mut Motion<N, W>,
+    motion: &mut LaneMotion<N, W>,
     asleep: Range<usize>,
-    scaled: &Scaled<N, W>,
+    scaled: &LaneScaled<N, W>,
 ) {
     let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
     let drift = load(&scaled.drift);
@@ -154,11 +154,11 @@ fn fly<S: Simd, N: Number<W>, const W: usize>(
 #[inline(always)]
 fn sweep<S: Simd, N: Number<W>, const W: usize>(
     simd: S,
-    motion: &mut Motion<N, W>,
+    motion: &mut LaneMotion<N, W>,
     now: &mut [N],
     (awake, lanes): (Range<usize>, usize),
     force: &[N],
-    scaled: &Scaled<N, W>,
+    scaled: &LaneScaled<N, W>,
 ) {
     let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
     let mut earlier = [&[] as &[_]; EARLIER];
@@ -166,7 +166,7 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
         let at = (motion.newest + age) % USED;
         *earlier = chunks_of(&motion.accelerations[at], awake.clone());
     }
-    let bodies = Bodies {
+    let bodies = LaneBodies {
         force: [force, &force[lanes..]].map(|force| chunks_of(force, awake.clone())),
         earlier,
         now: chunks_of_mut(now, awake.clone()),
@@ -187,7 +187,7 @@ fn sweep<S: Simd, N: Number<W>, const W: usize>(
     }
 }
 
-struct Bodies<'a, N, const W: usize> {
+struct LaneBodies<'a, N, const W: usize> {
     force: [&'a [[N; W]]; 2],
     earlier: [&'a [[N; W]]; EARLIER],
     now: &'a mut [[N; W]],
@@ -195,13 +195,13 @@ struct Bodies<'a, N, const W: usize> {
     v: &'a mut [[N; W]],
 }
 
-impl<N: Number<W>, const W: usize> Bodies<'_, N, W> {
+impl<N: Number<W>, const W: usize> LaneBodies<'_, N, W> {
     /// A step of bodies that accelerate as follows from their place and net force.
     #[inline(always)]
     fn step<S: Simd>(
         self,
         simd: S,
-        scaled: &Scaled<N, W>,
+        scaled: &LaneScaled<N, W>,
         acceleration: impl Fn(usize, N::Wide<S>) -> N::Wide<S>,
     ) {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);

@@ -1,6 +1,6 @@
 //! Openings and closings between two steps.
 
-use super::column::Column;
+use super::column::LaneColumn;
 use super::number::Number;
 use crate::instruction_set::InstructionSet;
 use fearless_simd::{dispatch, prelude::*};
@@ -29,7 +29,7 @@ impl<const W: usize> Changes<W> {
         &mut self,
         set: InstructionSet,
         (awake, lanes): (Range<usize>, usize),
-        offset_m: &Column<N, W>,
+        offset_m: &LaneColumn<N, W>,
         x: &[N],
     ) -> &[usize] {
         self.changed.clear();
@@ -45,7 +45,7 @@ impl<const W: usize> Changes<W> {
         &mut self,
         simd: S,
         (awake, lanes): (Range<usize>, usize),
-        offset_m: &Column<N, W>,
+        offset_m: &LaneColumn<N, W>,
         x: &[N],
     ) {
         let left = x[..awake.end * W].as_chunks::<W>().0;

@@ -16,14 +16,14 @@ pub(super) fn chunks<const W: usize>(count: usize, lanes: usize) -> usize {
 /// A constant quantity: one chunk for all if all are equal, so that the nearest
 /// cache holds what changes.
 #[derive(Debug)]
-pub(super) struct Column<N, const W: usize> {
+pub(super) struct LaneColumn<N, const W: usize> {
     values: Aligned<N>,
     stride: usize,
     /// What all its numbers are, if they are one.
     only: Option<N>,
 }
 
-impl<N: Number<W>, const W: usize> Column<N, W> {
+impl<N: Number<W>, const W: usize> LaneColumn<N, W> {
     /// From values of element `j` of chain `l`: of all lanes, or of the one
     /// that all share. `rest` fills the last chunk up.
     pub(super) fn new(

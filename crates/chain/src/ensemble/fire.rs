@@ -4,7 +4,7 @@ use super::behind::Behind;
 use super::block::Block;
 use super::number::Number;
 use super::passing::{End, Passing};
-use super::peaks::{Clock, Trace};
+use super::peaks::{Clock, LaneTrace};
 use super::record::Recorder;
 use super::weights::Schedule;
 use crate::instruction_set::InstructionSet;
@@ -45,7 +45,6 @@ pub enum Precision {
 
 impl Precision {
     /// Shots that run side by side.
-    #[must_use]
     pub fn lanes(self) -> usize {
         match self {
             Self::Double => 8,
@@ -116,14 +115,12 @@ const MOST_STEPS: usize = 1 << 19;
 const RESERVED: usize = 1 << 16;
 
 /// Fires shots, side by side where chains have the same shape; one that fails stops no other.
-#[must_use]
 pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<LaneResult, SolveError>> {
     fire_while(shots, settings, &|| true)
 }
 
 /// The same for as long as `wanted` says so, which is asked every few steps; what has not ended then
 /// is [`SolveError::BrokenOff`].
-#[must_use]
 pub fn fire_while(
     shots: &[Shot<'_>],
     settings: &Settings,
@@ -134,7 +131,6 @@ pub fn fire_while(
 
 /// The same, of each shot only what `kept` makes of it, by its place in the list: signals take
 /// memory, and those of one shot at a time are held.
-#[must_use]
 pub fn fire_each<T>(
     shots: &[Shot<'_>],
     settings: &Settings,
@@ -275,7 +271,7 @@ fn fire_block<N: Number<W>, const W: usize>(
     for (at, lane) in flying.into_iter().enumerate() {
         let clock = Clock { schedule, step_s: steps_s[at] };
         let signals = settings.sensors.iter().enumerate().map(|(index, &sensor)| {
-            let trace = Trace {
+            let trace = LaneTrace {
                 samples: recorder.samples(index, at),
                 last_step: lane.ended(),
                 clock,

@@ -4,10 +4,10 @@
 //! [`fuse`] run faster, because nothing is stored between one law and the
 //! next. A law needs no line here.
 
-use super::column::Column;
+use super::column::LaneColumn;
 use super::number::Number;
 use super::section::{Place, Sweep};
-use super::touch::{Sides, Touch};
+use super::touch::{LaneTouch, Sides};
 use crate::instruction_set::InstructionSet;
 use crate::laws::{
     Arithmetic, Closed, DampingCubic, DampingViscoelastic, ElasticHertz, Split, Wide,
@@ -57,7 +57,7 @@ pub(super) fn fuse<N: Number<W>, const W: usize>(
     laws: &[&str],
     contacts: Range<usize>,
     lanes: usize,
-    coefficients: Vec<Column<N, W>>,
+    coefficients: Vec<LaneColumn<N, W>>,
 ) -> Option<Box<dyn Sweep<N, W>>> {
     let first = contacts.start * lanes / W;
     let section = (contacts, first, coefficients);
@@ -78,12 +78,12 @@ struct Fused<T, N, const W: usize> {
     contacts: Range<usize>,
     /// Chunk in which the section and its coefficients begin.
     first: usize,
-    coefficients: Vec<Column<N, W>>,
+    coefficients: Vec<LaneColumn<N, W>>,
     sum: PhantomData<fn() -> T>,
 }
 
 impl<T: Sum, N: Number<W>, const W: usize> Fused<T, N, W> {
-    fn new((contacts, first, coefficients): (Range<usize>, usize, Vec<Column<N, W>>)) -> Self {
+    fn new((contacts, first, coefficients): (Range<usize>, usize, Vec<LaneColumn<N, W>>)) -> Self {
         Self { contacts, first, coefficients, sum: PhantomData }
     }
 
@@ -106,7 +106,7 @@ impl<T: Sum, N: Number<W>, const W: usize> Fused<T, N, W> {
             let k = [load(a), load(b), load(c)];
             pass::<T, S, N, W>(simd, place, chunks, force, |_| k);
         } else {
-            let columns = columns.map(Column::reader);
+            let columns = columns.map(LaneColumn::reader);
             pass::<T, S, N, W>(simd, place, chunks, force, |i| {
                 columns.map(|column| load(column.at(i - self.first)))
             });
@@ -154,7 +154,7 @@ fn pass<T: Sum, S: Simd, N: Number<W>, const W: usize>(
 fn sum<T: Sum, S: Simd, N: Number<W>, const W: usize>(
     simd: S,
     k: &[N::Wide<S>],
-    touch: Touch<N::Wide<S>>,
+    touch: LaneTouch<N::Wide<S>>,
 ) -> N::Wide<S> {
     let contact = Closed {
         overlap: touch.overlap,

@@ -24,7 +24,7 @@ impl Clock<'_> {
 
 /// What a lane's sensor showed until its last step.
 #[derive(Clone, Copy)]
-pub(super) struct Trace<'a, N, const W: usize> {
+pub(super) struct LaneTrace<'a, N, const W: usize> {
     pub samples: Samples<'a, N, W>,
     pub last_step: usize,
     pub clock: Clock<'a>,
@@ -34,7 +34,7 @@ pub(super) struct Trace<'a, N, const W: usize> {
     pub least_n_s: f64,
 }
 
-impl<N: Number<W>, const W: usize> Trace<'_, N, W> {
+impl<N: Number<W>, const W: usize> LaneTrace<'_, N, W> {
     /// The signal: its maxima, from steps whose samples are above both
     /// neighbours or below both, and with `shape` all that is above its floor.
     pub(super) fn signal(self, sensor: Sensor, extremes: &[usize], shape: bool) -> Signal {

@@ -1,6 +1,6 @@
 //! Sections of a chain, for all lanes at once.
 
-use super::column::{Column, chunks};
+use super::column::{LaneColumn, chunks};
 use super::fused::fuse;
 use super::number::Number;
 use super::touch::Sides;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Where all bodies are, and which of them move.
 pub(super) struct Place<'a, N, const W: usize> {
-    pub offset_m: &'a Column<N, W>,
+    pub offset_m: &'a LaneColumn<N, W>,
     /// Overlaps of this size and less are none.
     pub slightest_m: [N; W],
     pub lanes: usize,
@@ -64,11 +64,11 @@ pub(super) fn section<N: Number<W>, const W: usize>(
 fn coefficients<N: Number<W>, const W: usize>(
     lanes: usize,
     sections: &[&SectionColumns],
-) -> Vec<Column<N, W>> {
+) -> Vec<LaneColumn<N, W>> {
     let contacts = &sections[0].contacts;
     let first = contacts.start * lanes / W * W / lanes;
     let column = |term: usize, j: usize| {
-        Column::new(contacts.end - first, (lanes, sections.len()), 0.0, |c, lane| {
+        LaneColumn::new(contacts.end - first, (lanes, sections.len()), 0.0, |c, lane| {
             let inside = (first + c).checked_sub(contacts.start);
             inside.map_or(0.0, |c| sections[lane].gated[term].columns.column(j)[c])
         })

@@ -6,7 +6,7 @@ use super::section::Place;
 use fearless_simd::prelude::*;
 
 /// One chunk of contacts as laws see them.
-pub(super) struct Touch<V> {
+pub(super) struct LaneTouch<V> {
     pub overlap: V,
     pub root: V,
     /// Overlap rate; 0 where open, so that gated laws give no force there.
@@ -51,7 +51,7 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
     /// can only be at the start: whatever approaches from contact overlaps a
     /// step later.
     #[inline(always)]
-    pub(super) fn touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
+    pub(super) fn touch<S: Simd>(&self, simd: S, i: usize) -> LaneTouch<N::Wide<S>> {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
         let apart = load(&self.x[1][i]) - load(&self.x[0][i]);
         let depth = load(self.offset_m.at(self.first + i)) - apart;
@@ -60,7 +60,7 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
 
     /// The same in a chain without gaps and loads that has been set in motion.
     #[inline(always)]
-    pub(super) fn plain_touch<S: Simd>(&self, simd: S, i: usize) -> Touch<N::Wide<S>> {
+    pub(super) fn plain_touch<S: Simd>(&self, simd: S, i: usize) -> LaneTouch<N::Wide<S>> {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
         let depth = load(&self.x[0][i]) - load(&self.x[1][i]);
         self.touch_at(simd, i, depth, false)
@@ -73,7 +73,7 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
         i: usize,
         depth: N::Wide<S>,
         starting: bool,
-    ) -> Touch<N::Wide<S>> {
+    ) -> LaneTouch<N::Wide<S>> {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
         let zero = N::Wide::<S>::simd_from(simd, N::default());
         let across = load(&self.v[0][i]) - load(&self.v[1][i]);
@@ -83,7 +83,7 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
             true => deep | (depth.simd_ge(zero) & across.simd_gt(zero)),
             false => deep,
         };
-        Touch {
+        LaneTouch {
             overlap,
             root: N::roots(simd, overlap, deep.to_bitmask()),
             rate: closed.select(across, zero),

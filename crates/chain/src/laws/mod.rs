@@ -50,7 +50,6 @@ pub static LAWS: &[Row] = &[
 ];
 
 /// The row of a law by its name.
-#[must_use]
 pub fn find(name: &str) -> Option<&'static Row> {
     LAWS.iter().find(|row| row.info.name == name)
 }

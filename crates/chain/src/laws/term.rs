@@ -24,7 +24,6 @@ pub struct Closed<N = f64> {
 
 impl Closed {
     /// A contact that has never been deeper than now.
-    #[must_use]
     pub fn new(overlap: f64, rate: f64) -> Self {
         Self { overlap, root: overlap.sqrt(), rate, largest: overlap }
     }
@@ -57,7 +56,6 @@ pub enum Source {
 
 impl Source {
     /// Whether other laws or the two bodies decide where the user gives nothing.
-    #[must_use]
     pub const fn is_derived(self) -> bool {
         matches!(self, Self::Materials | Self::Hertz)
     }
@@ -152,15 +150,13 @@ pub struct Split<N> {
 impl<N: Arithmetic> Split<N> {
     /// With `one` · `other` · √δ more.
     #[inline(always)]
-    #[must_use]
-    pub fn add_rooted(self, one: N, other: N) -> Self {
+    pub(crate) fn add_rooted(self, one: N, other: N) -> Self {
         Self { rooted: one.times_plus(other, self.rooted), ..self }
     }
 
     /// With `one` · `other` more.
     #[inline(always)]
-    #[must_use]
-    pub fn add_plain(self, one: N, other: N) -> Self {
+    pub(crate) fn add_plain(self, one: N, other: N) -> Self {
         Self { plain: one.times_plus(other, self.plain), ..self }
     }
 }
@@ -183,7 +179,6 @@ pub struct Columns {
 
 impl Columns {
     /// Columns from one row a contact.
-    #[must_use]
     pub fn from_rows(rows: &[Vec<f64>]) -> Self {
         Self::from_runs(rows.iter().map(|row| (row.as_slice(), 1)))
     }
@@ -359,7 +354,6 @@ pub struct Row {
 }
 
 /// The registry row of a law.
-#[must_use]
 pub const fn row<T: Term<C>, const C: usize>() -> Row {
     Row { info: T::INFO, build: |values| law(T::new(values)) }
 }

@@ -72,7 +72,6 @@ pub enum Pulse {
 
 impl Pulse {
     /// Its name: `incident`, `wall` or `reflected`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Incident => "incident",
@@ -146,21 +145,18 @@ const ECHO: f64 = 2.0;
 
 impl Passage {
     /// Incident time of flight in s.
-    #[must_use]
     pub fn tof_incident_s(&self) -> f64 {
         self.wall.time_s - self.incident.time_s
     }
 
     /// The highest maximum, over its pulse's peak, that could be the peak of one of
     /// these pulses instead.
-    #[must_use]
     pub fn highest_competing(&self, pulses: &[Pulse]) -> Option<&Competing> {
         let competing = (self.competing.iter()).filter(|other| pulses.contains(&other.pulse));
         competing.max_by(|a, b| a.share.total_cmp(&b.share))
     }
 
     /// Reflected time of flight in s.
-    #[must_use]
     pub fn tof_reflected_s(&self) -> Option<f64> {
         self.reflected.map(|peak| peak.time_s - self.wall.time_s)
     }
@@ -169,7 +165,6 @@ impl Passage {
 impl Passages {
     /// Of a bead sensor and the wall contact; `ends_shot` when the shot has
     /// no other end than the reflected pulse.
-    #[must_use]
     pub fn new(sensor_bead: usize, wall_contact: usize, ends_shot: bool) -> Self {
         Self {
             sensor: Signal::new(Sensor::Bead(sensor_bead)),
@@ -184,7 +179,6 @@ impl Passages {
     }
 
     /// From the signals of a sensor bead and of the wall, followed until a time in s.
-    #[must_use]
     pub fn from_signals(sensor: Signal, wall: Signal, until_s: f64) -> Self {
         let mut passages = Self {
             sensor,
@@ -201,19 +195,16 @@ impl Passages {
     }
 
     /// The sensor bead's signal.
-    #[must_use]
     pub fn sensor(&self) -> &Signal {
         &self.sensor
     }
 
     /// Whether a signal takes all the memory that it may; that ends the shot.
-    #[must_use]
     pub fn is_full(&self) -> bool {
         self.sensor.is_full() || self.wall.is_full()
     }
 
     /// The wall's signal.
-    #[must_use]
     pub fn wall(&self) -> &Signal {
         &self.wall
     }
@@ -263,7 +254,6 @@ impl Passages {
     }
 
     /// Time of the wall's peak in s as far as seen.
-    #[must_use]
     pub fn wall_peak_s(&self) -> Option<f64> {
         self.best.map(|(_, wall)| wall.time_s)
     }
@@ -325,7 +315,6 @@ impl Passages {
 
     /// When the rising flank of the incident, wall and reflected pulse passes
     /// a fraction of its peak, in s.
-    #[must_use]
     pub fn flanks(&self, passage: &Passage, at: Flank) -> [Option<f64>; 3] {
         let rise =
             |signal: &Signal, peak: Maximum| crossing(signal, peak, at * peak.value, Side::Before);

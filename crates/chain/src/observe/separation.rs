@@ -15,7 +15,6 @@ pub struct Separation {
 impl Separation {
     /// Time in s of the first separation and the velocity of body 0 then in
     /// m/s, negative away from the chain.
-    #[must_use]
     pub fn first(&self) -> Option<(f64, f64)> {
         self.first.or(self.at_end)
     }

@@ -24,7 +24,7 @@ pub struct Shape {
 
 impl Shape {
     /// Of a maximum of which nothing is known.
-    pub const UNKNOWN: Self = Self { sharpness_per_s2: 0.0, interpolation_s: f64::INFINITY };
+    pub(crate) const UNKNOWN: Self = Self { sharpness_per_s2: 0.0, interpolation_s: f64::INFINITY };
 }
 
 /// A signal over one step: its values at five equidistant times.
@@ -40,7 +40,6 @@ pub struct Stretch {
 
 impl Stretch {
     /// The quartic through the five values.
-    #[must_use]
     pub fn at(&self, time_s: f64) -> f64 {
         let s = 4.0 * (time_s - self.start_s) / self.length_s;
         let [f0, f1, f2, f3, f4] = self.values;
@@ -73,7 +72,6 @@ impl Stretch {
     }
 
     /// End in s.
-    #[must_use]
     pub fn end_s(&self) -> f64 {
         self.start_s + self.length_s
     }
@@ -147,7 +145,6 @@ const MERGED: f64 = 1e-8;
 
 impl Signal {
     /// Of a sensor.
-    #[must_use]
     pub fn new(sensor: Sensor) -> Self {
         Self {
             sensor,
@@ -178,21 +175,18 @@ impl Signal {
     }
 
     /// The sensor.
-    #[must_use]
     pub fn sensor(&self) -> Sensor {
         self.sensor
     }
 
     /// All local maxima so far, in order of time; of forces, those above
     /// 1e-4 of the largest value seen until then.
-    #[must_use]
     pub fn maxima(&self) -> &[Maximum] {
         &self.maxima
     }
 
     /// The shape of a maximum; unknown of a signal that was followed step by step, or of what is
     /// no maximum of it.
-    #[must_use]
     pub fn shape(&self, of: &Maximum) -> Shape {
         let at = self.maxima.iter().position(|maximum| maximum == of);
         let shape = at.and_then(|at| self.shapes.get(at));
@@ -200,13 +194,11 @@ impl Signal {
     }
 
     /// The signal so far; absent where it is 0.
-    #[must_use]
     pub fn stretches(&self) -> &[Stretch] {
         &self.stretches
     }
 
     /// The signal at a time, 0 where nothing was kept.
-    #[must_use]
     pub fn at(&self, time_s: f64) -> f64 {
         let after = self.stretches.partition_point(|stretch| stretch.start_s <= time_s);
         match after.checked_sub(1).map(|i| self.stretches[i]) {
@@ -216,7 +208,6 @@ impl Signal {
     }
 
     /// Whether the signal takes all the memory that it may: steps that follow are not kept.
-    #[must_use]
     pub fn is_full(&self) -> bool {
         self.stretches.len() >= MOST_STRETCHES || self.maxima.len() >= MOST_MAXIMA
     }

@@ -39,7 +39,6 @@ impl Tracer {
 
     /// Samples sensors every `interval_s`, and energy about every
     /// `budget_interval_s` (at the starts of steps).
-    #[must_use]
     pub fn new(sensors: Vec<Sensor>, interval_s: f64, budget_interval_s: f64) -> Self {
         let columns = vec![Vec::new(); sensors.len()];
         let trace = Trace { sensors, columns, ..Trace::default() };
@@ -48,13 +47,11 @@ impl Tracer {
 
     /// When the trace would have had more than [`Self::MOST_NUMBERS`] numbers, in
     /// s; the shot ended there.
-    #[must_use]
     pub fn full_s(&self) -> Option<f64> {
         self.full_s
     }
 
     /// What was sampled.
-    #[must_use]
     pub fn into_trace(self) -> Trace {
         self.trace
     }

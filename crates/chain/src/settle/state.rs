@@ -14,7 +14,6 @@ pub struct State {
 
 impl State {
     /// A chain as its file says: at static equilibrium, the striker about to hit.
-    #[must_use]
     pub fn start(system: &System) -> Self {
         let displaced = system.origin_m.iter().zip(&system.displacement_m);
         Self {
@@ -26,7 +25,6 @@ impl State {
     /// Beads laid at rest, from the far end on, with these gaps in m at contacts
     /// 0..=N; a negative one is an overlap. A contact beyond the list has its
     /// static overlap.
-    #[must_use]
     pub fn laid(system: &System, gaps_m: &[f64]) -> Self {
         let mut displacement_m = vec![0.0; system.bodies()];
         for contact in (0..system.contacts()).rev() {
@@ -38,7 +36,6 @@ impl State {
     }
 
     /// At the end of a shot of the wave loop.
-    #[must_use]
     pub fn after(shot: &System, outcome: &Outcome) -> Self {
         let displaced = shot.origin_m.iter().zip(&outcome.displacement_m);
         Self {
@@ -62,14 +59,12 @@ impl State {
     }
 
     /// Overlap of a contact in m, negative across a gap, −∞ where no contact is.
-    #[must_use]
     pub fn overlap_m(&self, system: &System, contact: usize) -> f64 {
         let place = |body: usize| self.displacement_m.get(body).copied().unwrap_or(0.0);
         system.rest_overlap_m(contact) - (place(contact + 1) - place(contact))
     }
 
     /// Whether nothing but the striker moves.
-    #[must_use]
     pub fn rests(&self) -> bool {
         self.velocity_m_s.iter().skip(1).all(|&v| v == 0.0)
     }

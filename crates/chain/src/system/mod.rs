@@ -128,31 +128,26 @@ impl System {
     }
 
     /// Number of bodies, N + 2.
-    #[must_use]
     pub fn bodies(&self) -> usize {
         self.mass_kg.len()
     }
 
     /// Number of beads N.
-    #[must_use]
     pub fn beads(&self) -> usize {
         self.mass_kg.len() - 2
     }
 
     /// Number of contacts, N + 1; the last is the wall's.
-    #[must_use]
     pub fn contacts(&self) -> usize {
         self.offset_m.len()
     }
 
     /// Whether a contact has a body on both sides.
-    #[must_use]
     pub fn has_contact(&self, contact: usize) -> bool {
         self.offset_m.get(contact).is_some_and(|offset| offset.is_finite())
     }
 
     /// Whether the chain has a place for a sensor.
-    #[must_use]
     pub fn has(&self, sensor: Sensor) -> bool {
         let bead = |n: usize| (1..=self.beads()).contains(&n);
         match sensor {
@@ -164,7 +159,6 @@ impl System {
 
     /// Whether two chains differ in numbers alone, so that they can run side
     /// by side.
-    #[must_use]
     pub fn has_shape_of(&self, other: &Self) -> bool {
         fn names(terms: &[TermColumns]) -> impl Iterator<Item = &str> {
             terms.iter().map(|term| term.law.info().name)
@@ -208,7 +202,6 @@ impl System {
     }
 
     /// Characteristic speed and time.
-    #[must_use]
     pub fn scales(&self) -> Scales {
         self.scales
     }
@@ -244,7 +237,6 @@ impl System {
     }
 
     /// Whether bodies without contact fly on straight lines at constant speed.
-    #[must_use]
     pub fn flies_free(&self) -> bool {
         self.slope_m_s2 == 0.0
             && self.pendulum_per_s2 == 0.0

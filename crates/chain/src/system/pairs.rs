@@ -8,7 +8,6 @@ const ENDLESS: f64 = f64::INFINITY;
 
 impl Chain {
     /// What a contact's laws know of its two bodies; `None` where one is missing.
-    #[must_use]
     pub fn pair(&self, contact: usize) -> Option<Pair> {
         let (left, right) = (self.body(contact)?, self.body(contact + 1)?);
         let section = self.sections.iter().find(|section| section.contacts.contains(&contact));

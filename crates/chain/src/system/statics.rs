@@ -17,7 +17,6 @@ pub struct StaticContact {
 
 impl System {
     /// A contact at rest.
-    #[must_use]
     pub fn static_contact(&self, contact: usize) -> StaticContact {
         let overlap = self.offset_m[contact];
         StaticContact {

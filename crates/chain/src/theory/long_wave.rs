@@ -68,7 +68,7 @@ impl LongWave {
 
     /// Wave number κ of the profile, radians per bead: (n−1) √(6/(n(n+1))), or
     /// √3 (n−1)/n in the strain form.
-    pub fn wavenumber_per_bead(&self) -> f64 {
+    pub(crate) fn wavenumber_per_bead(&self) -> f64 {
         let n = self.exponent;
         match self.form {
             LongWaveForm::Displacement => (n - 1.0) * (6.0 / (n * (n + 1.0))).sqrt(),

@@ -7,7 +7,6 @@ impl Piece<'_> {
     /// Energy in J that all bodies but body 0 have and that all contacts hold:
     /// Σ m v²/2 + Σ U(δ). `None` where more than that can move them (loads, a
     /// push, threads, a driven end) or where laws remember.
-    #[must_use]
     pub fn energy_beyond_striker_j(&self, theta: f64) -> Option<f64> {
         let system = self.system;
         if !system.flies_free() || system.has_memory {
@@ -28,7 +27,6 @@ impl Piece<'_> {
     }
 
     /// Kinetic energy of body 0 in J while it flies away from the chain, else 0.
-    #[must_use]
     pub fn leaving_energy_j(&self, theta: f64) -> f64 {
         let speed = self.body(0, theta).1;
         match self.overlap(0, theta).0 < 0.0 && speed < 0.0 {
@@ -39,7 +37,6 @@ impl Piece<'_> {
 
     /// A force in N that a contact cannot exceed when all bodies together have
     /// no more than an energy: all of it as overlap, and all of it as approach.
-    #[must_use]
     pub fn most_force_n(&self, contact: usize, energy_j: f64) -> f64 {
         let system = self.system;
         let mut overlap = 1.0;

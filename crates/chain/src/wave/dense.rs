@@ -40,31 +40,26 @@ const NEAR_TOUCH: f64 = 0.05;
 
 impl Piece<'_> {
     /// Time at which the step starts, in s.
-    #[must_use]
     pub fn start_s(&self) -> f64 {
         self.state.time_s
     }
 
     /// Length of the step in s.
-    #[must_use]
     pub fn step_s(&self) -> f64 {
         self.step_s
     }
 
     /// Time at `theta`, in s.
-    #[must_use]
     pub fn time_s(&self, theta: f64) -> f64 {
         self.state.time_s + theta * self.step_s
     }
 
     /// The chain.
-    #[must_use]
     pub fn system(&self) -> &System {
         self.system
     }
 
     /// Energy terms at the start of the step, when a budget is kept.
-    #[must_use]
     pub fn budget(&self) -> Option<Budget> {
         let meter = self.meter?;
         let asleep = |i: &usize| !self.is_awake(*i) && self.state.v[*i] != 0.0;
@@ -83,13 +78,11 @@ impl Piece<'_> {
     }
 
     /// Whether a body is in the part of the chain that moves.
-    #[must_use]
-    pub fn is_awake(&self, body: usize) -> bool {
+    pub(crate) fn is_awake(&self, body: usize) -> bool {
         self.window.contains(&body)
     }
 
     /// Whether a contact is open during the step (with fixed steps: at its start).
-    #[must_use]
     pub fn is_open(&self, contact: usize) -> bool {
         match self.is_slow(contact) {
             true => self.overlap(contact, 0.0).0 < 0.0,
@@ -127,7 +120,6 @@ impl Piece<'_> {
     }
 
     /// Displacement in m and velocity in m/s of a body.
-    #[must_use]
     pub fn body(&self, body: usize, theta: f64) -> (f64, f64) {
         let time = self.time_s(theta);
         if body == 0
@@ -164,7 +156,6 @@ impl Piece<'_> {
     }
 
     /// Overlap in m (negative across a gap) and overlap rate in m/s of a contact.
-    #[must_use]
     pub fn overlap(&self, contact: usize, theta: f64) -> (f64, f64) {
         let (left, before) = self.body(contact, theta);
         let (right, after) = self.body(contact + 1, theta);
@@ -172,7 +163,6 @@ impl Piece<'_> {
     }
 
     /// Dynamic force of a contact in N: its force less the static one.
-    #[must_use]
     pub fn force(&self, contact: usize, theta: f64) -> f64 {
         let (overlap, rate) = self.overlap(contact, theta);
         self.force_at(contact, overlap, rate) - self.system.static_force_n[contact]
@@ -228,8 +218,7 @@ impl Piece<'_> {
 
     /// Rate of change of a contact's force in N/s, by a central difference
     /// along the motion whose step balances rounding and curvature.
-    #[must_use]
-    pub fn force_rate(&self, contact: usize, theta: f64) -> f64 {
+    pub(crate) fn force_rate(&self, contact: usize, theta: f64) -> f64 {
         let (overlap, rate) = self.overlap(contact, theta);
         let change = self.acceleration(contact, theta) - self.acceleration(contact + 1, theta);
         let step = 1e-4 * self.step_s;
@@ -239,7 +228,6 @@ impl Piece<'_> {
     }
 
     /// A sensor's signal.
-    #[must_use]
     pub fn signal(&self, sensor: Sensor, theta: f64) -> f64 {
         match sensor {
             Sensor::Bead(n) => 0.5 * (self.force(self.before(n), theta) + self.force(n, theta)),
@@ -253,8 +241,7 @@ impl Piece<'_> {
     }
 
     /// Rate of change of a sensor's signal, per s.
-    #[must_use]
-    pub fn signal_rate(&self, sensor: Sensor, theta: f64) -> f64 {
+    pub(crate) fn signal_rate(&self, sensor: Sensor, theta: f64) -> f64 {
         match sensor {
             Sensor::Bead(n) => {
                 0.5 * (self.force_rate(self.before(n), theta) + self.force_rate(n, theta))
@@ -280,8 +267,7 @@ impl Piece<'_> {
 
     /// Whether anything a sensor sees is in the part of the chain that moves;
     /// no, if the chain has no such place.
-    #[must_use]
-    pub fn sees(&self, sensor: Sensor) -> bool {
+    pub(crate) fn sees(&self, sensor: Sensor) -> bool {
         let system = self.system;
         let bead = |n: usize| {
             (1..=system.beads()).contains(&n)

@@ -52,13 +52,11 @@ impl Budget {
     }
 
     /// What is missing, in J: 0 but for the solver's error.
-    #[must_use]
     pub fn residual_j(&self) -> f64 {
         self.accounted_j() - self.driven_j - self.start_j
     }
 
     /// Residual over the input energy; infinite if there was none.
-    #[must_use]
     pub fn relative_residual(&self) -> f64 {
         match self.residual_j() {
             0.0 => 0.0,

@@ -219,7 +219,6 @@ pub struct Limits {
 
 impl Limits {
     /// Until a time, with all else as usual.
-    #[must_use]
     pub fn until(duration_s: f64) -> Self {
         Self {
             duration_s,

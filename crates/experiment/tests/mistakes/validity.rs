@@ -119,10 +119,11 @@ fn overlaps_that_are_not_small_are_warned_of_at_their_probable_cause() {
         ("= \"213 GPa\"", "= \"1 MPa\"", "\"1 MPa\""),
         ("\"elastic_hertz\"", hertz, hertz),
     ] {
-        let finding = warning(&bare.replacen(from, to, 1));
+        let found = warnings(&bare.replacen(from, to, 1));
+        let finding = found.iter().find(|one| one.one_line().contains("overlap by")).unwrap();
         let line = 1 + bare.lines().position(|l| l.contains(from)).unwrap();
         let words = ["of their reduced radius", "out of its range", "smooth spheres"];
-        check(&finding, line, text, &words);
+        check(finding, line, text, &words);
     }
 }
 
@@ -187,4 +188,22 @@ fn files_that_come_along_use_their_laws_within_range() {
             }
         }
     }
+}
+
+#[test]
+fn beads_that_no_laboratory_has_are_warned_of() {
+    let with = |from: &str, to: &str| {
+        assert!(DRY.contains(from), "{from}");
+        DRY.replacen(from, to, 1)
+    };
+    let soft = warnings(&with("= \"213 GPa\"", "= \"210 MPa\""));
+    let soft = soft.iter().find(|found| found.one_line().contains("210 MPa")).unwrap();
+    check(soft, line_of("young_modulus"), "\"210 MPa\"", &["7.96 g/cm^3", "is the unit right?"]);
+    let says = |text: &str, words: &str| {
+        let found = warnings(text);
+        assert!(found.iter().any(|warning| warning.one_line().contains(words)), "{found:?}");
+    };
+    says(&with("= \"6.35 mm\"", "= \"6 m\""), "radius of 6 m");
+    says(&with("= \"8.54 g\"", "= \"8.54 kg\""), "no solid has it");
+    assert!(warnings(DRY).is_empty());
 }

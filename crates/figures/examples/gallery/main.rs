@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hertzchain_figures::{
-    Animation, Chart, Colour, ColourMap, Dash, FarEnd, Figure, HeatMap, Marker, RigDrawing, Series,
+    Animation, Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, RigDrawing, RigEnd, Series,
     Verdict, VerdictMatrix,
 };
 
@@ -140,8 +140,9 @@ fn tof() -> Figure {
             )
     };
     let x_label = "Impact speed $v_0$ (m/s)";
-    let inset = add(Chart::new("$v_0$ (m/s)", "ToF (µs)").x_log().y_log());
-    Figure::single_column(68.0).panel(add(Chart::new(x_label, "Time of flight (µs)")).inset(inset))
+    let empty = Chart::new(x_label, "Time of flight (µs)");
+    let log = add(empty.clone().x_log().y_log());
+    Figure::single_column(125.0).letters().panel(add(empty)).panel(log)
 }
 
 fn ratios() -> Figure {
@@ -307,7 +308,7 @@ fn paper_rig() -> RigDrawing {
         wet_contacts: Some((7, 40)),
         liquid: "motor oil".into(),
         incline_deg: 0.5,
-        far_end: FarEnd::HalfBead,
+        far_end: RigEnd::HalfBead,
         wall_sensor: true,
         actuator: "voice-coil actuator".into(),
         repositioner: "ball repositioner".into(),

@@ -1,11 +1,10 @@
 //! A shot as a moving picture: one HTML file that needs nothing else.
 
-use std::fmt::Write as _;
-
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use crate::draw::ColourMap;
+use serde_json::json;
 
 /// Largest number of values stored per quantity; beyond, frames and then beads are left out.
 const MOST_VALUES: usize = 1_500_000;
@@ -19,6 +18,7 @@ const SCRIPT: &str = include_str!("player.js");
 ///
 /// Positions are drawn with displacements multiplied by a stated factor.
 #[derive(Debug, Clone, PartialEq)]
+#[must_use]
 pub struct Animation {
     title: String,
     times_s: Vec<f64>,
@@ -36,7 +36,6 @@ impl Animation {
     /// `positions_m[bead][time]` and `forces_n[contact][time]` at ascending
     /// `times_s`; contact c lies between bead c and c + 1. `radii_m` has one
     /// entry per bead. What is missing counts as zero.
-    #[must_use]
     pub fn new(
         times_s: &[f64],
         positions_m: &[Vec<f64>],
@@ -58,21 +57,18 @@ impl Animation {
     }
 
     /// Heading of the page; plain text.
-    #[must_use]
     pub fn title(mut self, title: &str) -> Self {
         self.title = title.into();
         self
     }
 
     /// Names a bead, such as the striker or the sensor bead; plain text.
-    #[must_use]
     pub fn mark(mut self, bead: usize, name: &str) -> Self {
         self.marks.push((bead, name.into()));
         self
     }
 
     /// First and last contact that is drawn with oil.
-    #[must_use]
     pub fn wet(mut self, first: usize, last: usize) -> Self {
         self.wet_contacts = Some((first, last));
         self
@@ -80,7 +76,6 @@ impl Animation {
 
     /// Unit of shown times with its number in a second, and unit of forces;
     /// empty names in a dimensionless chain. Microseconds and newtons by default.
-    #[must_use]
     pub fn units(mut self, (per_second, time): (f64, &str), force: &str) -> Self {
         self.time_unit = (per_second, time.into());
         self.force_unit = force.into();
@@ -88,14 +83,12 @@ impl Animation {
     }
 
     /// Number of the contact behind the first bead; 0 by default.
-    #[must_use]
     pub fn first_contact(mut self, number: usize) -> Self {
         self.first_contact = number;
         self
     }
 
     /// The page.
-    #[must_use]
     pub fn html(&self) -> String {
         let title = crate::draw::escape(&self.title);
         let script = SCRIPT.replace("\"@DATA@\"", &self.data());
@@ -105,7 +98,7 @@ impl Animation {
         before + &script + &after
     }
 
-    /// All numbers and names as one JavaScript object.
+    /// All numbers and names as JSON.
     fn data(&self) -> String {
         let stride = self.stride();
         let beads: Vec<usize> = (0..self.positions_m.len()).step_by(stride).collect();
@@ -117,30 +110,17 @@ impl Animation {
         let places: Vec<f64> = beads.iter().map(|b| self.start(*b)).collect();
         let (u, u_range) = quantised(&moved);
         let (f, f_range) = quantised(&forces);
-        let fields = [
-            ("beads", beads.len().to_string()),
-            ("stride", stride.to_string()),
-            ("frames", grid.len().to_string()),
-            ("from", number(grid.first().copied().unwrap_or(0.0))),
-            ("to", number(grid.last().copied().unwrap_or(0.0))),
-            ("factor", number(factor)),
-            ("x0", base64_f32(&places)),
-            ("radius", base64_f32(&radii)),
-            ("u", base64_u16(&u)),
-            ("uRange", range(u_range)),
-            ("f", base64_u16(&f)),
-            ("fRange", range(f_range)),
-            ("contacts", forces.len().to_string()),
-            ("wet", self.wet_contacts.map_or("null".into(), |(a, b)| format!("[{a},{b}]"))),
-            ("marks", self.marks_json()),
-            ("timeScale", number(self.time_unit.0)),
-            ("timeUnit", json_text(&self.time_unit.1)),
-            ("forceUnit", json_text(&self.force_unit)),
-            ("firstContact", self.first_contact.to_string()),
-            ("colours", colours()),
-        ];
-        let body: Vec<String> = fields.iter().map(|(k, v)| format!("{k}:{v}")).collect();
-        format!("{{{}}}", body.join(","))
+        let data = json!({
+            "beads": beads.len(), "stride": stride, "frames": grid.len(),
+            "from": grid.first(), "to": grid.last(), "factor": factor,
+            "x0": base64_f32(&places), "radius": base64_f32(&radii),
+            "u": base64_u16(&u), "uRange": u_range, "f": base64_u16(&f), "fRange": f_range,
+            "contacts": forces.len(), "wet": self.wet_contacts, "marks": self.marks,
+            "timeScale": self.time_unit.0, "timeUnit": self.time_unit.1,
+            "forceUnit": self.force_unit, "firstContact": self.first_contact, "colours": colours(),
+        });
+        // No text ends the script element.
+        data.to_string().replace('<', "\\u003c")
     }
 
     /// Every how many beads one is kept.
@@ -209,27 +189,13 @@ impl Animation {
         let path = self.positions_m.get(bead);
         path.and_then(|p| p.iter().copied().find(|x| x.is_finite())).unwrap_or(0.0)
     }
-
-    fn marks_json(&self) -> String {
-        let entries = self.marks.iter().map(|(bead, name)| format!("[{bead},{}]", json_text(name)));
-        format!("[{}]", entries.collect::<Vec<_>>().join(","))
-    }
-}
-
-/// A number as JavaScript writes it.
-fn number(value: f64) -> String {
-    if value.is_finite() { format!("{value:e}") } else { "0".into() }
-}
-
-fn range((lo, hi): (f64, f64)) -> String {
-    format!("[{},{}]", number(lo), number(hi))
 }
 
 /// The sequential map as 256 hexadecimal colours.
 fn colours() -> String {
     let hex =
         (0..256).map(|i| ColourMap::Sequential.colour(0.97 - f64::from(i) / 300.0).to_string());
-    json_text(&hex.collect::<String>())
+    hex.collect()
 }
 
 /// Linear interpolation of `(times, values)` at the ascending times of `grid`.
@@ -264,32 +230,16 @@ fn quantised(rows: &[Vec<f64>]) -> (Vec<u16>, (f64, f64)) {
     (all().map(level).collect(), (lo, hi))
 }
 
-/// Little-endian bytes as a quoted base64 text.
+/// Little-endian bytes in base64.
 fn base64_u16(values: &[u16]) -> String {
     let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-    format!("\"{}\"", STANDARD.encode(bytes))
+    STANDARD.encode(bytes)
 }
 
-/// Single precision, little-endian, as a quoted base64 text.
+/// Single precision, little-endian, in base64.
 fn base64_f32(values: &[f64]) -> String {
     let bytes: Vec<u8> = values.iter().flat_map(|v| (*v as f32).to_le_bytes()).collect();
-    format!("\"{}\"", STANDARD.encode(bytes))
-}
-
-/// A quoted JSON text that is safe inside a script element.
-fn json_text(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => out.extend(['\\', c]),
-            c if c.is_control() || matches!(c, '<' | '>' | '&' | '\u{2028}' | '\u{2029}') => {
-                let _ = write!(out, "\\u{:04x}", u32::from(c));
-            }
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
+    STANDARD.encode(bytes)
 }
 
 #[cfg(test)]

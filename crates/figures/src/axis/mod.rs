@@ -84,45 +84,26 @@ pub(crate) fn ticks(scale: &Scale, room: &Room) -> Ticks {
     if scale.log { log_ticks(scale, room) } else { linear_ticks(scale, room) }
 }
 
-/// A tick distance of `mantissa * 10^exponent`.
+/// A tick distance: number of a step in the row …, 0.5, 1, 2, 5, 10, …
 #[derive(Debug, Clone, Copy)]
-struct TickStep {
-    mantissa: u8,
-    exponent: i32,
-}
+struct TickStep(i32);
 
 impl TickStep {
     /// The first step that cuts the span into no more than `parts`.
     fn at_least(span: f64, parts: f64) -> Self {
         let raw = span / parts;
-        let mut step = Self { mantissa: 1, exponent: raw.log10().floor() as i32 };
-        // One, two or three changes lead from a power of ten to the next.
-        for _ in 0..4 {
-            if step.size() < raw * (1.0 - 1e-9) {
-                step = step.next();
-            }
-        }
-        step
+        let decade = 3 * raw.log10().floor() as i32;
+        // One, two or three steps lead from a power of ten to the next.
+        let found = (decade..decade + 4).find(|step| Self(*step).size() >= raw * (1.0 - 1e-9));
+        Self(found.unwrap_or(decade + 4))
     }
 
-    fn next(self) -> Self {
-        let (mantissa, up) = match self.mantissa {
-            1 => (2, 0),
-            2 => (5, 0),
-            _ => (1, 1),
-        };
-        let exponent = self.exponent + up;
-        Self { mantissa, exponent }
+    fn mantissa(self) -> f64 {
+        [1.0, 2.0, 5.0][self.0.rem_euclid(3) as usize]
     }
 
-    fn before(self) -> Self {
-        let (mantissa, down) = match self.mantissa {
-            5 => (2, 0),
-            2 => (1, 0),
-            _ => (5, 1),
-        };
-        let exponent = self.exponent - down;
-        Self { mantissa, exponent }
+    fn exponent(self) -> i32 {
+        self.0.div_euclid(3)
     }
 
     fn size(self) -> f64 {
@@ -130,12 +111,12 @@ impl TickStep {
     }
 
     fn multiple(self, n: f64) -> f64 {
-        times_power(n * f64::from(self.mantissa), self.exponent)
+        times_power(n * self.mantissa(), self.exponent())
     }
 
     /// Small steps per labelled step.
     fn subdivisions(self) -> f64 {
-        if self.mantissa == 2 { 4.0 } else { 5.0 }
+        if self.mantissa() == 2.0 { 4.0 } else { 5.0 }
     }
 }
 
@@ -150,14 +131,14 @@ fn linear_ticks(scale: &Scale, room: &Room) -> Ticks {
         if major.len() <= 3 || room.fits(scale, &major) {
             break;
         }
-        step = step.next();
+        step = TickStep(step.0 + 1);
         major = labelled(scale, step, exponent);
     }
     for _ in 0..TRIES {
         if major.len() >= 2 {
             break;
         }
-        step = step.before();
+        step = TickStep(step.0 - 1);
         major = labelled(scale, step, exponent);
     }
     Ticks { minor: minor(scale, step), major, exponent }
@@ -172,7 +153,7 @@ fn shared_exponent(scale: &Scale) -> Option<i32> {
 
 fn labelled(scale: &Scale, step: TickStep, exponent: Option<i32>) -> Vec<Tick> {
     let shift = exponent.unwrap_or(0);
-    let decimals = usize::try_from(shift - step.exponent).unwrap_or(0);
+    let decimals = usize::try_from(shift - step.exponent()).unwrap_or(0);
     multiples(scale, step.size())
         .map(|n| {
             let value = step.multiple(n);

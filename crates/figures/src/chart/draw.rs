@@ -1,28 +1,23 @@
 //! Drawing a prepared chart into its frame.
 
-use super::free::{Occupancy, places};
-use super::{Chart, ChartStyle, Plot, Prepared, strokes};
+use super::{FRAME, LABEL, Plot, Prepared, SMALL, TICK, reference, strokes};
 use crate::axis::{Scale, Ticks};
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
 use crate::text::{Anchor, TextLine};
 
-/// Share of the outer frame that an inset takes, labels included, and its least size in points.
-const INSET: f64 = 0.47;
-const SMALLEST_INSET: (f64, f64) = (62.0, 44.0);
-
 impl Prepared<'_> {
     /// Draws everything: the data inside `frame`, the labels around it.
     pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
-        let (chart, style) = (self.chart, &self.style);
+        let chart = self.chart;
         let plot = Plot { frame: *frame, x: self.x, y: self.y };
         if let Some(map) = &chart.heat {
             map.draw(svg, &plot);
-            map.draw_bar(svg, frame, style);
+            map.draw_bar(svg, frame);
         }
         for (a, b) in chart.references.iter().filter_map(|line| line.ends(&plot)) {
             svg.segment(a, b, &Paint::dashed(Colour::GREY, 0.6, &[2.2, 1.8]));
         }
-        strokes::draw(svg, chart, style, &plot);
+        strokes::draw(svg, chart, &plot);
         self.draw_frame(svg, frame);
         if !chart.x.unlabelled {
             self.draw_x_labels(svg, frame);
@@ -30,9 +25,9 @@ impl Prepared<'_> {
         if !chart.y.unlabelled {
             self.draw_y_labels(svg, frame);
         }
-        let bottom = frame.y0 - self.factor_room() - 0.3 * style.small;
-        self.legend.draw(svg, chart, style, frame.centre().x, bottom);
-        self.draw_extras(svg, &plot);
+        let bottom = frame.y0 - self.factor_room() - 0.3 * SMALL;
+        self.legend.draw(svg, chart, frame.centre().x, bottom);
+        reference::draw_labels(svg, chart, &plot);
     }
 
     /// The frame with inward ticks on all four sides.
@@ -51,15 +46,15 @@ impl Prepared<'_> {
         }
         if self.chart.heat.is_some() {
             // A light rim keeps ticks visible over dark colours.
-            let rim = Paint::line(Colour::WHITE, 2.2 * self.style.frame);
+            let rim = Paint::line(Colour::WHITE, 2.2 * FRAME);
             svg.path(&path, &rim.opacity(0.7));
         }
-        svg.path(&path, &Paint::line(Colour::BLACK, self.style.frame));
+        svg.path(&path, &Paint::line(Colour::BLACK, FRAME));
     }
 
     /// Places of ticks along the axis, as shares, with their lengths.
     fn tick_shares(&self, scale: &Scale, ticks: &Ticks) -> Vec<(f64, f64)> {
-        let (long, short) = (self.style.tick, 0.55 * self.style.tick);
+        let (long, short) = (TICK, 0.55 * TICK);
         let major = ticks.major.iter().map(|tick| (tick.value, long));
         let all = major.chain(ticks.minor.iter().map(|value| (*value, short)));
         let placed = all.filter_map(|(value, length)| Some((scale.share(value)?, length)));
@@ -67,14 +62,14 @@ impl Prepared<'_> {
     }
 
     fn draw_x_labels(&self, svg: &mut Svg, frame: &Rect) {
-        let (small, ink) = (self.style.small, Colour::BLACK);
+        let (small, ink) = (SMALL, Colour::BLACK);
         for tick in &self.x_ticks.major {
             let x = frame.x0 + self.x.share(tick.value).unwrap_or(0.0) * frame.width();
             let at = Point::new(x, frame.y1 + 3.0 + 0.85 * small);
             TextLine::new(&tick.label, small).draw(svg, at, Anchor::CENTRE, ink);
         }
         let mut room = frame.width();
-        let label = TextLine::new(&self.chart.x.label, self.style.label);
+        let label = TextLine::new(&self.chart.x.label, LABEL);
         let y = frame.y1 + 3.0 + 1.35 * small + label.ascent();
         if let Some(factor) = self.x_ticks.factor(small) {
             factor.draw(svg, Point::new(frame.x1, y), Anchor::RIGHT, ink);
@@ -85,7 +80,7 @@ impl Prepared<'_> {
     }
 
     fn draw_y_labels(&self, svg: &mut Svg, frame: &Rect) {
-        let (small, ink) = (self.style.small, Colour::BLACK);
+        let (small, ink) = (SMALL, Colour::BLACK);
         for tick in &self.y_ticks.major {
             let y = frame.y1 - self.y.share(tick.value).unwrap_or(0.0) * frame.height();
             let at = Point::new(frame.x0 - 2.5, y);
@@ -95,59 +90,9 @@ impl Prepared<'_> {
             let at = Point::new(frame.x0, frame.y0 - 0.6 * small);
             factor.draw(svg, at, Anchor::LEFT, ink);
         }
-        let label = TextLine::new(&self.chart.y.label, self.style.label);
+        let label = TextLine::new(&self.chart.y.label, LABEL);
         let label = label.shrunk_to(1.08 * frame.height());
         let x = frame.x0 - 4.5 - self.y_ticks.widest(small) - label.descent();
         label.draw_turned(svg, Point::new(x, frame.centre().y), Anchor::CENTRE, ink, 90.0);
     }
-
-    /// Inset, labels of reference lines and notes, each where it hides least.
-    fn draw_extras(&self, svg: &mut Svg, plot: &Plot) {
-        let (chart, style, frame) = (self.chart, &self.style, &plot.frame);
-        if chart.inset.is_none() && chart.notes.is_empty() && chart.references.is_empty() {
-            return;
-        }
-        let mut taken = Occupancy::of(chart, style, plot);
-        if let Some(inset) = &chart.inset {
-            let size = (INSET * frame.width(), INSET * frame.height());
-            let corners = places(&frame.grown(-6.0), size.0, size.1);
-            taken.take(&corners[..4]).into_iter().for_each(|area| draw_inset(svg, inset, &area));
-        }
-        for line in chart.references.iter().filter(|line| !line.label.is_empty()) {
-            let Some((a, b)) = line.ends(plot) else {
-                continue;
-            };
-            let text = TextLine::new(&line.label, style.small);
-            let text = text.shrunk_to(0.9 * (b.y - a.y).max(b.x - a.x));
-            if let Some(place) = taken.take(&line.label_places(plot, &text, a)) {
-                let angle = if place.height() > place.width() { 90.0 } else { 0.0 };
-                text.draw_turned(svg, place.centre(), Anchor::MIDDLE, Colour::grey(70), angle);
-            }
-        }
-        let inner = frame.grown(-style.tick - 2.0);
-        for note in &chart.notes {
-            let line = TextLine::new(note, style.small).shrunk_to(inner.width());
-            let places = places(&inner, line.width(), 1.3 * style.small);
-            if let Some(place) = taken.take(&places) {
-                line.draw(svg, place.centre(), Anchor::MIDDLE, Colour::BLACK);
-            }
-        }
-    }
-}
-
-/// Draws the inset with all its labels within `area`; too small an area stays empty.
-fn draw_inset(svg: &mut Svg, inset: &Chart, area: &Rect) {
-    if area.width() < SMALLEST_INSET.0 || area.height() < SMALLEST_INSET.1 {
-        return;
-    }
-    let prepared =
-        |frame: &Rect| Prepared::new(inset, ChartStyle::INSET, (frame.width(), frame.height()));
-    let smaller = area.grown(-0.15 * area.width().min(area.height()));
-    let mut margins = prepared(&smaller).margins();
-    for _ in 0..3 {
-        margins = margins.union(prepared(&area.inside(margins)).margins());
-    }
-    let frame = area.inside(margins);
-    svg.rect(area, &Paint::fill(Colour::WHITE));
-    prepared(&frame).draw(svg, &frame);
 }

@@ -1,6 +1,6 @@
 //! Scales, ticks and legend of a chart and the room they need, before anything is drawn.
 
-use super::{Axis, Chart, ChartStyle, Legend, Series, SeriesKind, strokes};
+use super::{Axis, Chart, LABEL, Legend, PAD, SMALL, Series, SeriesKind, strokes};
 use crate::axis::{Extent, Room, Scale, Ticks, ticks};
 use crate::draw::{Colour, Margins, Point, Rect, Svg};
 use crate::text::{Anchor, TextLine};
@@ -31,7 +31,6 @@ impl Plot {
 /// A chart with its scales, ticks and legend chosen for a frame size.
 pub(crate) struct Prepared<'a> {
     pub(super) chart: &'a Chart,
-    pub(super) style: ChartStyle,
     pub(super) x: Scale,
     pub(super) y: Scale,
     pub(super) x_ticks: Ticks,
@@ -42,17 +41,15 @@ pub(crate) struct Prepared<'a> {
 
 impl<'a> Prepared<'a> {
     /// For a frame of about the given size.
-    pub(crate) fn new(chart: &'a Chart, style: ChartStyle, size: (f64, f64)) -> Self {
-        let (x, y) = (x_scale(chart, &style), y_scale(chart, &style));
-        let font = style.small;
-        let room = |length, side_by_side| Room { length, font, side_by_side };
+    pub(crate) fn new(chart: &'a Chart, size: (f64, f64)) -> Self {
+        let (x, y) = (x_scale(chart), y_scale(chart));
+        let room = |length, side_by_side| Room { length, font: SMALL, side_by_side };
         let x_ticks = ticks(&x, &room(size.0, true));
         Self {
             x_ticks: if chart.x.whole { x_ticks.whole() } else { x_ticks },
             y_ticks: ticks(&y, &room(size.1, false)),
-            legend: LegendBox::new(chart, font, size.0),
+            legend: LegendBox::new(chart, size.0),
             chart,
-            style,
             x,
             y,
             size,
@@ -61,17 +58,17 @@ impl<'a> Prepared<'a> {
 
     /// Room for tick labels, axis labels, legend and colour bar around the frame.
     pub(crate) fn margins(&self) -> Margins {
-        let (chart, style) = (self.chart, &self.style);
-        let height = |text: &str| TextLine::new(text, style.label).height();
-        let mut side = Margins { left: 2.0, right: 2.0, top: 0.55 * style.small, bottom: 2.0 };
+        let chart = self.chart;
+        let height = |text: &str| TextLine::new(text, LABEL).height();
+        let mut side = Margins { left: 2.0, right: 2.0, top: 0.55 * SMALL, bottom: 2.0 };
         if !chart.y.unlabelled {
-            side.left = self.y_ticks.widest(style.small) + 3.5;
+            side.left = self.y_ticks.widest(SMALL) + 3.5;
             if !chart.y.label.is_empty() {
                 side.left += height(&chart.y.label) + 2.0;
             }
         }
         if !chart.x.unlabelled {
-            side.bottom = 1.35 * style.small + 3.0;
+            side.bottom = 1.35 * SMALL + 3.0;
             if !chart.x.label.is_empty() || self.x_ticks.exponent.is_some() {
                 side.bottom += height(&chart.x.label) + 1.5;
             }
@@ -79,7 +76,7 @@ impl<'a> Prepared<'a> {
             side.left = side.left.max(left);
             side.right = side.right.max(right);
         }
-        let bar = chart.heat.as_ref().map(|map| map.bar_room(style, self.size.1));
+        let bar = chart.heat.as_ref().map(|map| map.bar_room(self.size.1));
         let (bar, above) = bar.unwrap_or_default();
         side.right += bar;
         side.top += self.factor_room().max(above) + self.legend.height();
@@ -88,14 +85,14 @@ impl<'a> Prepared<'a> {
 
     /// Room above the frame for a power of ten.
     pub(super) fn factor_room(&self) -> f64 {
-        self.y_ticks.exponent.map_or(0.0, |_| 1.5 * self.style.small)
+        self.y_ticks.exponent.map_or(0.0, |_| 1.5 * SMALL)
     }
 
     /// How far the outermost x tick labels reach beyond the frame.
     fn overhang(&self) -> (f64, f64) {
         let (mut left, mut right) = (0.0_f64, 0.0_f64);
         for tick in &self.x_ticks.major {
-            let half = 0.5 * TextLine::new(&tick.label, self.style.small).width();
+            let half = 0.5 * TextLine::new(&tick.label, SMALL).width();
             if let Some(share) = self.x.share(tick.value) {
                 left = left.max(half - share * self.size.0);
                 right = right.max(half - (1.0 - share) * self.size.0);
@@ -107,7 +104,7 @@ impl<'a> Prepared<'a> {
 
 /// The x scale of a chart: as asked for, or around the data. Lines and maps fill the frame from
 /// edge to edge; points near an edge need air there.
-pub(crate) fn x_scale(chart: &Chart, style: &ChartStyle) -> Scale {
+pub(crate) fn x_scale(chart: &Chart) -> Scale {
     if let Some(scale) = chosen(&chart.x) {
         return scale;
     }
@@ -121,13 +118,12 @@ pub(crate) fn x_scale(chart: &Chart, style: &ChartStyle) -> Scale {
     if let Some(map) = &chart.heat {
         all.extend([map.x.0, map.x.1]);
     }
-    let (tight, airy) = (all.scale(0.0), all.scale(style.pad));
+    let (tight, airy) = (all.scale(0.0), all.scale(PAD));
     let Some((first, last)) = points.ends().filter(|_| chart.heat.is_none()) else {
         return tight;
     };
-    let near = |value: f64, edge: f64| {
-        tight.share(value).is_some_and(|share| (share - edge).abs() < style.pad)
-    };
+    let near =
+        |value: f64, edge: f64| tight.share(value).is_some_and(|share| (share - edge).abs() < PAD);
     let lo = if near(first, 0.0) { airy.lo } else { tight.lo };
     let hi = if near(last, 1.0) { airy.hi } else { tight.hi };
     Scale { lo, hi, ..tight }
@@ -141,9 +137,9 @@ fn add_x(extent: &mut Extent, series: &Series) {
 }
 
 /// The y scale of a chart: as asked for, or around the data.
-fn y_scale(chart: &Chart, style: &ChartStyle) -> Scale {
+fn y_scale(chart: &Chart) -> Scale {
     let mut extent = Extent::new(chart.y.log);
-    let x = x_scale(chart, style);
+    let x = x_scale(chart);
     for series in &chart.series {
         for (i, (_, y)) in series.xy().enumerate().filter(|(_, (at, _))| x.holds(*at)) {
             let error = |e: &[f64]| e.get(i).copied().unwrap_or(0.0);
@@ -159,7 +155,7 @@ fn y_scale(chart: &Chart, style: &ChartStyle) -> Scale {
     }
     // Maps and stacked areas fill their frame.
     let areas = !chart.series.is_empty() && chart.series.iter().all(Series::is_band);
-    let pad = if chart.heat.is_some() || areas { 0.0 } else { 1.5 * style.pad };
+    let pad = if chart.heat.is_some() || areas { 0.0 } else { 1.5 * PAD };
     chosen(&chart.y).unwrap_or_else(|| extent.scale(pad))
 }
 
@@ -168,30 +164,30 @@ fn chosen(axis: &Axis) -> Option<Scale> {
     Scale::fixed(from, to, axis.log)
 }
 
-/// The names of a chart's series beside samples of their look, in rows above the frame: there it
-/// hides nothing.
+/// The names of a chart's series beside samples of their look, and its notes, in rows above the
+/// frame: there they hide nothing.
 pub(super) struct LegendBox {
     entries: Vec<(usize, TextLine)>,
+    notes: Vec<TextLine>,
     columns: usize,
-    font: f64,
 }
 
-/// Length of the sample left of a name, distance of lines and of columns, in font sizes.
-const SAMPLE: f64 = 2.6;
-const LEADING: f64 = 1.4;
-const GAP: f64 = 1.2;
+/// Length of the sample left of a name, distances of lines and of columns.
+const SAMPLE: f64 = 2.6 * SMALL;
+const LEADING: f64 = 1.4 * SMALL;
+const GAP: f64 = 1.2 * SMALL;
 
 impl LegendBox {
     /// As few rows as `widest` allows, their columns aligned.
-    fn new(chart: &Chart, font: f64, widest: f64) -> Self {
-        let room = widest - (SAMPLE + 1.2) * font;
+    fn new(chart: &Chart, widest: f64) -> Self {
+        let room = widest - SAMPLE - 1.2 * SMALL;
         let named = chart.series.iter().enumerate();
         let named = named.filter(|(_, s)| chart.legend == Legend::Auto && !s.name.is_empty());
-        let entries = named.map(|(i, s)| (i, TextLine::new(&s.name, font).shrunk_to(room)));
-        let entries: Vec<(usize, TextLine)> = entries.collect();
-        let mut legend = Self { entries, columns: 1, font };
-        let gap = GAP * font;
-        let most = ((widest + gap) / (legend.cell() + gap)).floor().max(1.0) as usize;
+        let entries = named.map(|(i, s)| (i, TextLine::new(&s.name, SMALL).shrunk_to(room)));
+        let notes = chart.notes.iter().map(|note| TextLine::new(note, SMALL).shrunk_to(widest));
+        let (entries, notes) = (entries.collect(), notes.collect());
+        let mut legend = Self { entries, notes, columns: 1 };
+        let most = ((widest + GAP) / (legend.cell() + GAP)).floor().max(1.0) as usize;
         let rows = legend.entries.len().div_ceil(most).max(1);
         legend.columns = legend.entries.len().div_ceil(rows).max(1);
         legend
@@ -200,44 +196,37 @@ impl LegendBox {
     /// Width of one entry.
     fn cell(&self) -> f64 {
         let widths = self.entries.iter().map(|(_, name)| name.width());
-        widths.fold(0.0, f64::max) + (SAMPLE + 1.0) * self.font
-    }
-
-    fn width(&self) -> f64 {
-        let columns = self.columns as f64;
-        columns * self.cell() + (columns - 1.0) * GAP * self.font
+        widths.fold(0.0, f64::max) + SAMPLE + SMALL
     }
 
     pub(super) fn height(&self) -> f64 {
-        match self.entries.len().div_ceil(self.columns) {
+        match self.entries.len().div_ceil(self.columns) + self.notes.len() {
             0 => 0.0,
-            rows => (rows as f64 * LEADING + 0.5) * self.font,
+            rows => rows as f64 * LEADING + 0.5 * SMALL,
         }
     }
 
     /// Draws the rows above `bottom`, in the middle of the frame.
-    pub(super) fn draw(
-        &self,
-        svg: &mut Svg,
-        chart: &Chart,
-        style: &ChartStyle,
-        middle: f64,
-        bottom: f64,
-    ) {
+    pub(super) fn draw(&self, svg: &mut Svg, chart: &Chart, middle: f64, bottom: f64) {
+        let width = self.columns as f64 * (self.cell() + GAP) - GAP;
+        let (left, top) = (middle - 0.5 * width, bottom - self.height());
+        let row_at = |row: usize| top + 0.25 * SMALL + (row as f64 + 0.5) * LEADING;
+        for (i, note) in self.notes.iter().enumerate() {
+            let y = row_at(self.entries.len().div_ceil(self.columns) + i);
+            note.draw(svg, Point::new(middle, y), Anchor::MIDDLE, Colour::BLACK);
+        }
         if self.entries.is_empty() {
             return;
         }
-        let (left, top) = (middle - 0.5 * self.width(), bottom - self.height());
-        let place = Rect::sized(left, top, self.width(), self.height());
-        svg.open_legend(&place.grown(-0.2 * self.font));
+        let height = self.height() - self.notes.len() as f64 * LEADING;
+        svg.open_legend(&Rect::sized(left, top, width, height).grown(-0.2 * SMALL));
         for (number, (index, name)) in self.entries.iter().enumerate() {
             let (column, row) = (number % self.columns, number / self.columns);
-            let left = left + 0.2 * self.font + column as f64 * (self.cell() + GAP * self.font);
-            let y = top + (0.25 + (row as f64 + 0.5) * LEADING) * self.font;
-            let sample =
-                Rect::sized(left, y - 0.4 * self.font, SAMPLE * self.font, 0.8 * self.font);
-            strokes::draw_sample(svg, chart, style, *index, &sample);
-            let at = Point::new(left + (SAMPLE + 0.5) * self.font, y);
+            let left = left + 0.2 * SMALL + column as f64 * (self.cell() + GAP);
+            let y = row_at(row);
+            let sample = Rect::sized(left, y - 0.4 * SMALL, SAMPLE, 0.8 * SMALL);
+            strokes::draw_sample(svg, chart, *index, &sample);
+            let at = Point::new(left + SAMPLE + 0.5 * SMALL, y);
             name.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
         }
         svg.close();

@@ -1,8 +1,8 @@
 //! Diagrams with axes: what they show.
 
 mod draw;
-mod free;
 mod layout;
+mod reference;
 mod strokes;
 
 pub(crate) use layout::{Plot, Prepared, x_scale};
@@ -44,6 +44,7 @@ pub enum Legend {
 ///
 /// Labels are in the markup of this crate: `$v_0$ (m/s)`, `$10^{-5}$`, `$\Delta$`.
 #[derive(Debug, Clone, PartialEq)]
+#[must_use]
 pub struct Chart {
     pub(crate) title: String,
     pub(crate) x: Axis,
@@ -51,14 +52,12 @@ pub struct Chart {
     pub(crate) series: Vec<Series>,
     pub(crate) references: Vec<ReferenceLine>,
     pub(crate) notes: Vec<String>,
-    pub(crate) inset: Option<Box<Chart>>,
     pub(crate) legend: Legend,
     pub(crate) heat: Option<HeatMap>,
 }
 
 impl Chart {
     /// An empty chart with linear axes.
-    #[must_use]
     pub fn new(x_label: &str, y_label: &str) -> Self {
         let axis = |label: &str| Axis { label: label.into(), ..Axis::default() };
         Self {
@@ -68,21 +67,18 @@ impl Chart {
             series: Vec::new(),
             references: Vec::new(),
             notes: Vec::new(),
-            inset: None,
             legend: Legend::default(),
             heat: None,
         }
     }
 
     /// A short title above the frame, next to the panel letter.
-    #[must_use]
     pub fn title(mut self, title: &str) -> Self {
         self.title = title.into();
         self
     }
 
     /// Makes the x axis logarithmic.
-    #[must_use]
     pub fn x_log(mut self) -> Self {
         self.x.log = true;
         self
@@ -95,41 +91,35 @@ impl Chart {
     }
 
     /// Makes the y axis logarithmic.
-    #[must_use]
     pub fn y_log(mut self) -> Self {
         self.y.log = true;
         self
     }
 
     /// Fixes the x range; ignored if it makes no axis.
-    #[must_use]
     pub fn x_range(mut self, from: f64, to: f64) -> Self {
         self.x.range = Some((from, to));
         self
     }
 
     /// Fixes the y range; ignored if it makes no axis.
-    #[must_use]
     pub fn y_range(mut self, from: f64, to: f64) -> Self {
         self.y.range = Some((from, to));
         self
     }
 
     /// Adds a series; later ones lie on top.
-    #[must_use]
     pub fn with(mut self, series: Series) -> Self {
         self.series.push(series);
         self
     }
 
     /// Adds a horizontal reference line.
-    #[must_use]
     pub fn h_line(self, y: f64, label: &str) -> Self {
         self.reference(y, label, false)
     }
 
     /// Adds a vertical reference line.
-    #[must_use]
     pub fn v_line(self, x: f64, label: &str) -> Self {
         self.reference(x, label, true)
     }
@@ -140,31 +130,19 @@ impl Chart {
         self
     }
 
-    /// Adds a line of text in a free corner.
-    #[must_use]
+    /// Adds a line of text above the frame, below the legend.
     pub fn note(mut self, text: &str) -> Self {
         self.notes.push(text.into());
         self
     }
 
-    /// Adds a small chart in the freest corner. It has no legend or inset of its own.
-    #[must_use]
-    pub fn inset(mut self, mut chart: Chart) -> Self {
-        chart.legend = Legend::Off;
-        chart.inset = None;
-        self.inset = Some(Box::new(chart));
-        self
-    }
-
     /// Switches the legend off or on.
-    #[must_use]
     pub fn legend(mut self, legend: Legend) -> Self {
         self.legend = legend;
         self
     }
 
     /// Lays a map under the series of this chart.
-    #[must_use]
     pub fn heat(mut self, map: HeatMap) -> Self {
         self.heat = Some(map);
         self
@@ -246,7 +224,6 @@ impl Marker {
 
 /// Returns the colour and marker of a case in every figure: the paper's for its liquids, known by
 /// the first word of the name, else the next by `number`.
-#[must_use]
 pub fn case_look(case: &str, number: usize) -> (Colour, Marker) {
     match case.split(|c: char| !c.is_alphanumeric()).next() {
         Some("dry") => (Colour::BLACK, Marker::OpenCircle),
@@ -263,6 +240,7 @@ pub fn case_look(case: &str, number: usize) -> (Colour, Marker) {
 /// Points that are not finite, or not positive on a logarithmic axis, are left
 /// out and break the line.
 #[derive(Debug, Clone, PartialEq)]
+#[must_use]
 pub struct Series {
     pub(crate) name: String,
     pub(crate) x: Vec<f64>,
@@ -302,39 +280,33 @@ impl Series {
     }
 
     /// A line through the points. An empty name keeps it out of the legend.
-    #[must_use]
     pub fn line(name: &str, x: &[f64], y: &[f64]) -> Self {
         Self::new(name, x, y, SeriesKind::Line)
     }
 
     /// Separate points.
-    #[must_use]
     pub fn points(name: &str, x: &[f64], y: &[f64]) -> Self {
         Self::new(name, x, y, SeriesKind::Points(None))
     }
 
     /// A shaded area between two curves.
-    #[must_use]
     pub fn band(name: &str, x: &[f64], lower: &[f64], upper: &[f64]) -> Self {
         Self::new(name, x, lower, SeriesKind::Band(upper.to_vec()))
     }
 
     /// Sets the colour; without it the palette is walked through.
-    #[must_use]
     pub fn colour(mut self, colour: Colour) -> Self {
         self.colour = Some(colour);
         self
     }
 
     /// Sets the line pattern; without it, lines of automatic colour differ by pattern too.
-    #[must_use]
     pub fn dash(mut self, dash: Dash) -> Self {
         self.dash = Some(dash);
         self
     }
 
     /// Sets the marker; a line keeps its stroke and gains points.
-    #[must_use]
     pub fn marker(mut self, marker: Marker) -> Self {
         self.kind = match self.kind {
             SeriesKind::Points(_) => SeriesKind::Points(Some(marker)),
@@ -345,27 +317,23 @@ impl Series {
     }
 
     /// Line width in points (1/72 inch); 1 by default.
-    #[must_use]
     pub fn width(mut self, points: f64) -> Self {
         self.width = points.clamp(0.1, 10.0);
         self
     }
 
     /// Symmetric vertical error bars.
-    #[must_use]
     pub fn y_error(self, error: &[f64]) -> Self {
         self.y_errors(error, error)
     }
 
     /// Vertical error bars of different lengths below and above.
-    #[must_use]
     pub fn y_errors(mut self, below: &[f64], above: &[f64]) -> Self {
         self.y_error = (below.to_vec(), above.to_vec());
         self
     }
 
     /// Symmetric horizontal error bars.
-    #[must_use]
     pub fn x_error(mut self, error: &[f64]) -> Self {
         self.x_error = error.to_vec();
         self
@@ -385,31 +353,17 @@ impl Series {
     }
 }
 
-/// The look of a chart's frame and text.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ChartStyle {
-    /// Font size of tick labels and legends.
-    pub(crate) small: f64,
-    /// Font size of axis labels.
-    pub(crate) label: f64,
-    /// Length of a labelled tick.
-    pub(crate) tick: f64,
-    /// Width of frame and ticks.
-    pub(crate) frame: f64,
-    /// Half the size of a marker.
-    pub(crate) marker: f64,
-    /// Factor on line widths.
-    pub(crate) line: f64,
-    /// Free share at the ends of an axis.
-    pub(crate) pad: f64,
-}
+// The look of a chart, in points: legible at the column width of a journal.
 
-impl ChartStyle {
-    /// Legible at the column width of a journal.
-    pub(crate) const JOURNAL: Self =
-        Self { small: 7.0, label: 8.0, tick: 4.0, frame: 0.6, marker: 2.1, line: 1.0, pad: 0.04 };
-
-    /// For a chart inside a chart.
-    pub(crate) const INSET: Self =
-        Self { small: 6.4, label: 7.0, tick: 2.6, frame: 0.5, marker: 1.4, line: 0.8, pad: 0.06 };
-}
+/// Font size of tick labels and legends.
+pub(crate) const SMALL: f64 = 7.0;
+/// Font size of axis labels.
+pub(crate) const LABEL: f64 = 8.0;
+/// Length of a labelled tick.
+const TICK: f64 = 4.0;
+/// Width of frame and ticks.
+pub(crate) const FRAME: f64 = 0.6;
+/// Half the size of a marker.
+const MARKER: f64 = 2.1;
+/// Free share at the ends of an axis.
+const PAD: f64 = 0.04;

@@ -1,7 +1,7 @@
 //! Series as strokes on the page: broken at gaps, cut at the frame, thinned to what a printed
 //! pixel can show.
 
-use super::{Chart, ChartStyle, Dash, Marker, Plot, Series, SeriesKind};
+use super::{Chart, Dash, MARKER, Marker, Plot, Series, SeriesKind};
 use crate::axis::Scale;
 use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg, clip_segment};
 use std::collections::BTreeSet;
@@ -132,7 +132,7 @@ fn draw_error_bars(svg: &mut Svg, plot: &Plot, series: &Series, size: f64, colou
 }
 
 /// Draws all series: bands below, then lines and points in their order.
-pub(super) fn draw(svg: &mut Svg, chart: &Chart, style: &ChartStyle, plot: &Plot) {
+pub(super) fn draw(svg: &mut Svg, chart: &Chart, plot: &Plot) {
     for (i, series) in chart.series.iter().enumerate() {
         if let SeriesKind::Band(upper) = &series.kind {
             let mut path = PathData::new();
@@ -149,23 +149,17 @@ pub(super) fn draw(svg: &mut Svg, chart: &Chart, style: &ChartStyle, plot: &Plot
             for piece in pieces(plot, series) {
                 path.polyline(&piece);
             }
-            svg.path(&path, &line_paint(chart, style, i));
+            svg.path(&path, &line_paint(chart, i));
         }
         if let Some(marker) = marker_of(series, i) {
-            draw_error_bars(svg, plot, series, 0.7 * style.marker, colour);
-            draw_markers(svg, marker, &centres(plot, series), style.marker, colour);
+            draw_error_bars(svg, plot, series, 0.7 * MARKER, colour);
+            draw_markers(svg, marker, &centres(plot, series), MARKER, colour);
         }
     }
 }
 
 /// Draws a sample of a series into a box of a legend.
-pub(super) fn draw_sample(
-    svg: &mut Svg,
-    chart: &Chart,
-    style: &ChartStyle,
-    index: usize,
-    place: &Rect,
-) {
+pub(super) fn draw_sample(svg: &mut Svg, chart: &Chart, index: usize, place: &Rect) {
     let (series, colour) = (&chart.series[index], chart.colour_of(index));
     let middle = place.centre();
     if series.is_band() {
@@ -173,10 +167,10 @@ pub(super) fn draw_sample(
     }
     if series.has_line() {
         let ends = [place.x0, place.x1].map(|x| Point::new(x, middle.y));
-        svg.segment(ends[0], ends[1], &line_paint(chart, style, index));
+        svg.segment(ends[0], ends[1], &line_paint(chart, index));
     }
     if let Some(marker) = marker_of(series, index) {
-        draw_markers(svg, marker, &[middle], style.marker, colour);
+        draw_markers(svg, marker, &[middle], MARKER, colour);
     }
 }
 
@@ -187,7 +181,7 @@ fn band_paint(colour: Colour) -> Paint {
 }
 
 /// Stroke of a line series: those of automatic colour differ by pattern too.
-fn line_paint(chart: &Chart, style: &ChartStyle, index: usize) -> Paint {
+fn line_paint(chart: &Chart, index: usize) -> Paint {
     let series = &chart.series[index];
     let before = chart.series[..index].iter().filter(|s| s.has_line()).count();
     let automatic = match series.colour {
@@ -195,7 +189,7 @@ fn line_paint(chart: &Chart, style: &ChartStyle, index: usize) -> Paint {
         Some(_) => Dash::Solid,
     };
     let dash = series.dash.unwrap_or(automatic).pattern();
-    Paint::dashed(chart.colour_of(index), series.width * style.line, dash)
+    Paint::dashed(chart.colour_of(index), series.width, dash)
 }
 
 /// Marker of a series, if it has one.

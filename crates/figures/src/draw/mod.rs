@@ -70,13 +70,6 @@ impl Rect {
         Point::new(0.5 * (self.x0 + self.x1), 0.5 * (self.y0 + self.y1))
     }
 
-    /// Shrinks by the given space; never turns inside out.
-    pub(crate) fn inside(&self, by: Margins) -> Self {
-        let width = self.width() - by.left - by.right;
-        let height = self.height() - by.top - by.bottom;
-        Self::sized(self.x0 + by.left, self.y0 + by.top, width, height)
-    }
-
     /// Grows by the same amount on all sides.
     pub(crate) fn grown(&self, by: f64) -> Self {
         Self { x0: self.x0 - by, y0: self.y0 - by, x1: self.x1 + by, y1: self.y1 + by }

@@ -118,19 +118,14 @@ pub(crate) struct Stroke {
 /// How a path is painted.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Paint {
-    fill: Option<String>,
+    fill: Option<Colour>,
     stroke: Option<Stroke>,
     opacity: Option<f64>,
 }
 
 impl Paint {
     pub(crate) fn fill(colour: Colour) -> Self {
-        Self { fill: Some(colour.to_string()), ..Self::default() }
-    }
-
-    /// Fills with a gradient made by [`Svg::gradient`].
-    pub(crate) fn gradient(id: &str) -> Self {
-        Self { fill: Some(format!("url(#{id})")), ..Self::default() }
+        Self { fill: Some(colour), ..Self::default() }
     }
 
     pub(crate) fn line(colour: Colour, width: f64) -> Self {
@@ -154,7 +149,8 @@ impl Paint {
     }
 
     fn attributes(&self) -> String {
-        let mut out = format!(" fill=\"{}\"", self.fill.as_deref().unwrap_or("none"));
+        let fill = self.fill.map_or("none".to_owned(), |fill| fill.to_string());
+        let mut out = format!(" fill=\"{fill}\"");
         if let Some(stroke) = self.stroke {
             let _ = write!(out, " stroke=\"{}\" stroke-width=\"", stroke.colour);
             fmt(&mut out, stroke.width);
@@ -191,9 +187,7 @@ const FONT: &str = "font-family=\"'Noto Sans', 'Open Sans', 'DejaVu Sans', Arial
 #[derive(Debug, Default)]
 pub(crate) struct Svg {
     body: String,
-    defs: String,
     glyphs: BTreeMap<GlyphId, String>,
-    gradients: Vec<(Colour, String)>,
     texts: usize,
     legends: usize,
     /// Text becomes outlines.
@@ -246,23 +240,6 @@ impl Svg {
 
     pub(crate) fn close(&mut self) {
         self.body.push_str("</g>\n");
-    }
-
-    /// Shading of a ball lit from the upper left; the name to paint with.
-    pub(crate) fn ball_gradient(&mut self, colour: Colour) -> String {
-        if let Some((_, id)) = self.gradients.iter().find(|(c, _)| *c == colour) {
-            return id.clone();
-        }
-        let id = format!("b{}", self.gradients.len());
-        let (light, dark) = (colour.mixed(Colour::WHITE, 0.75), colour.mixed(Colour::BLACK, 0.3));
-        let _ = writeln!(
-            self.defs,
-            "<radialGradient id=\"{id}\" cx=\"0.36\" cy=\"0.32\" r=\"0.72\">\
-             <stop offset=\"0\" stop-color=\"{light}\"/><stop offset=\"0.55\" stop-color=\"{colour}\"/>\
-             <stop offset=\"1\" stop-color=\"{dark}\"/></radialGradient>"
-        );
-        self.gradients.push((colour, id.clone()));
-        id
     }
 
     /// A PNG stretched over `rect`, its pixels kept sharp.
@@ -324,7 +301,7 @@ impl Svg {
         if !description.is_empty() {
             let _ = writeln!(out, "<desc>{}</desc>", escape(description));
         }
-        let _ = writeln!(out, "<defs>\n{}", self.defs);
+        out.push_str("<defs>\n");
         for (id, d) in self.glyphs {
             let _ = writeln!(out, "<path id=\"{id}\" d=\"{d}\"/>");
         }

@@ -1,7 +1,7 @@
 //! A posterior, parameter by parameter and pair by pair.
 
-use super::density::{histogram, joint};
-use crate::{Chart, Colour, Dash, Figure, Legend, Panel, Series};
+use super::density::{histogram, joint, level};
+use crate::{Chart, Colour, ColourMap, Dash, Figure, HeatMap, Legend, Panel, Series};
 use std::f64::consts::TAU;
 
 /// Samples of several parameters.
@@ -22,7 +22,7 @@ const CELLS: usize = 50;
 const FINE: usize = 80;
 /// Radii, in standard errors, of the ellipses that hold as much of a normal pair.
 const RADII: [f64; 2] = [2.482, 1.515];
-/// Shares of the samples within the lines.
+/// Shares of the samples within the shaded areas.
 const SHARES: [f64; 2] = [0.954, 0.683];
 /// Share of the samples outside of a panel, at either end.
 const OUTSIDE: f64 = 0.001;
@@ -30,9 +30,8 @@ const OUTSIDE: f64 = 0.001;
 const MOST: usize = 8;
 
 impl Corner<'_> {
-    /// Densities on the diagonal, below it lines that hold 68 and 95 % of each
+    /// Densities on the diagonal, below it areas that hold 68 and 95 % of each
     /// pair's samples. The first eight parameters are drawn.
-    #[must_use]
     pub fn figure(&self) -> Figure {
         let count = self.labels.len().min(self.samples.len()).min(MOST);
         let ranges: Vec<(f64, f64)> = self.samples[..count].iter().map(|s| range(s)).collect();
@@ -50,7 +49,7 @@ impl Corner<'_> {
             }
         });
         figure.title("Posterior of the parameters").caption(
-            "Diagonal: density of each parameter, its middle 68 % shaded. Below: lines that hold 68 and 95 % \
+            "Diagonal: density of each parameter, its middle 68 % shaded. Below: areas that hold 68 and 95 % \
              of the samples of each pair. Dashed: the best fit, and the same by its covariance.",
         )
     }
@@ -127,16 +126,19 @@ impl Corner<'_> {
         ranges: ((f64, f64), (f64, f64)),
     ) -> Chart {
         let pairs = self.samples[column].iter().zip(&self.samples[row]);
-        let field = joint(pairs.map(|(x, y)| (*x, *y)), ranges, FINE);
-        let mut chart = self.empty(row, column, count, ranges.0);
+        let rows = joint(pairs.map(|(x, y)| (*x, *y)), ranges, FINE);
+        let levels = SHARES.map(|share| level(&rows, share));
+        let depth = |value: &f64| levels.iter().filter(|level| value >= level).count() as f64;
+        let depths: Vec<f64> = rows.iter().flatten().map(depth).collect();
+        let areas = HeatMap::new(FINE, FINE, &depths)
+            .x_edges(ranges.0.0, ranges.0.1)
+            .y_edges(ranges.1.0, ranges.1.1)
+            .colours(ColourMap::Blues)
+            .limits(0.0, 2.0);
+        let mut chart = self.empty(row, column, count, ranges.0).heat(areas);
         chart = chart.y_range(ranges.1.0, ranges.1.1);
         if let Some(mark) = self.marks.get(row) {
             chart = chart.h_line(*mark, "");
-        }
-        for (share, pale) in SHARES.into_iter().zip([0.45, 0.0]) {
-            let (x, y) = field.contour(field.level(share));
-            let colour = Colour::BLUE.mixed(Colour::WHITE, pale);
-            chart = chart.with(Series::line("", &x, &y).colour(colour).dash(Dash::Solid));
         }
         for (x, y) in (RADII.iter()).filter_map(|radius| self.ellipse(row, column, *radius)) {
             chart = chart.with(by_covariance("", &x, &y));

@@ -28,7 +28,6 @@ pub struct ProfileCurve<'a> {
 const BETWEEN: usize = 12;
 
 /// One panel a parameter: the profile, and the parabola that the covariance takes it for.
-#[must_use]
 pub fn profile_figure(curves: &[ProfileCurve<'_>]) -> Figure {
     let columns = if curves.len() > 1 { 2 } else { 1 };
     let rows = curves.len().div_ceil(columns).max(1);
@@ -101,7 +100,6 @@ pub struct SingularValues<'a> {
 
 impl SingularValues<'_> {
     /// Values above, the parameters' parts in each direction below.
-    #[must_use]
     pub fn figure(&self) -> Figure {
         Figure::single_column(110.0)
             .panel(self.sizes())

@@ -75,7 +75,6 @@ pub struct FitResult {
 impl Inferred {
     /// Standard error of a parameter by the covariance; infinite where the data leave
     /// the parameter open, however finite a linear analysis may be.
-    #[must_use]
     pub fn standard_error(&self, at: usize) -> f64 {
         let sd = self.covariance.sd[at];
         match self.identifiability.leaves_open(at, sd) {
@@ -85,14 +84,12 @@ impl Inferred {
     }
 
     /// Minima of other starts that fit as well, and how many starts came to each.
-    #[must_use]
     pub fn other_minima(&self) -> Vec<(&Started, usize)> {
         let sd: Vec<f64> = (0..self.parameters.len()).map(|at| self.standard_error(at)).collect();
         self.fit.other_minima(&sd)
     }
 
     /// How far from its bound a parameter may be, if it lies there.
-    #[must_use]
     pub fn limit(&self, at: usize) -> Option<&Limit> {
         let limits = self.limits.as_ref().ok()?;
         limits.iter().find(|limit| limit.parameter == at)
@@ -102,8 +99,7 @@ impl Inferred {
 impl FitResult {
     /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
     /// each.
-    #[must_use]
-    pub fn unasked(&self, arguments: &Arguments) -> Vec<String> {
+    pub(crate) fn unasked(&self, arguments: &Arguments) -> Vec<String> {
         let accuracy = (arguments.modelled.accuracy.0, self.problem.model().accuracy);
         unasked(&self.inferred.fit, accuracy, arguments.starts.0)
     }
@@ -111,8 +107,7 @@ impl FitResult {
     /// That several pairs of K and A may give the data, where both are free and two times of
     /// flight a pair are all that was measured, and how to look for them; nothing if the fit
     /// had several starts.
-    #[must_use]
-    pub fn pair_warning(&self) -> Option<String> {
+    pub(crate) fn pair_warning(&self) -> Option<String> {
         let numbers = self.problem.model().numbers().as_slice();
         let of = |number: &FreeNumber, short: &str| {
             let (owner, name) = number.name().rsplit_once('.').unwrap_or(("", number.name()));

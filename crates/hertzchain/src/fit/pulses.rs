@@ -208,14 +208,12 @@ fn attempted(
 impl Pulsed {
     /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
     /// each.
-    #[must_use]
-    pub fn unasked(&self, arguments: &Arguments) -> Vec<String> {
+    pub(crate) fn unasked(&self, arguments: &Arguments) -> Vec<String> {
         let accuracy = (arguments.modelled.accuracy.0, self.problem.model().accuracy);
         unasked(&self.inferred.fit, accuracy, arguments.starts.0)
     }
 
     /// The amplifier's filters that the model's signals have passed, in words.
-    #[must_use]
     pub fn filters(&self) -> String {
         let model = self.problem.model();
         let mut amplifier = model.experiment().campaign().amplifier;
@@ -235,7 +233,6 @@ impl Pulsed {
 const LOW_PASS: &str = "campaign.amplifier.low_pass";
 
 /// Everything, to be read by programs and to be repeated.
-#[must_use]
 pub fn json(fit_result: &Pulsed, arguments: &Arguments) -> Value {
     let records = fit_result.problem.records().iter();
     let own = json!({
@@ -286,8 +283,7 @@ pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
 }
 
 /// One line a mean of samples.
-#[must_use]
-pub fn pulses_csv(shown: &[Shown<'_>]) -> String {
+pub(crate) fn pulses_csv(shown: &[Shown<'_>]) -> String {
     let mut text = "source,channel,time_s,measured_V,error_V,fitted_V\n".to_owned();
     for Shown { record, channel, columns: [times, measured, model] } in shown {
         let source = record.source.replace('"', "\"\"");
@@ -300,7 +296,6 @@ pub fn pulses_csv(shown: &[Shown<'_>]) -> String {
 }
 
 /// Every mean of samples beside the fitted one.
-#[must_use]
 pub fn rows_json(shown: &[Shown<'_>]) -> Value {
     let rows = shown.iter().flat_map(|shown| {
         let [times, measured, fit_result] = &shown.columns;

@@ -9,7 +9,6 @@ use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Pr
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
-#[must_use]
 pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
     let data = fit_result.problem.data();
     let own = json!({
@@ -48,7 +47,6 @@ fn prospects(advice: &Advice) -> Value {
 }
 
 /// The entries of two objects in one.
-#[must_use]
 pub fn joined(mut one: Value, other: Value) -> Value {
     if let (Value::Object(one), Value::Object(other)) = (&mut one, other) {
         one.extend(other);
@@ -57,7 +55,6 @@ pub fn joined(mut one: Value, other: Value) -> Value {
 }
 
 /// What any fit determines.
-#[must_use]
 pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
     let (fit, goodness) = (&fit_result.fit, &fit_result.goodness);
     json!({
@@ -246,7 +243,6 @@ fn compared(alternatives: &AlternativeModels, comparison: &Comparison) -> Value 
 }
 
 /// Every measured value beside the fitted one with its standard error.
-#[must_use]
 pub fn rows_json(fit_result: &FitResult) -> Value {
     let measured = fit_result.problem.measured().into_iter();
     let one = |((at, of), residual): ((usize, Observable), &f64)| {

@@ -12,7 +12,6 @@ use hertzchain_infer::{
 pub type Table = (&'static str, String);
 
 /// Every table of a fit of a curve.
-#[must_use]
 pub fn tables(fit_result: &FitResult) -> Vec<Table> {
     let mut all = vec![("fit.csv", rows(fit_result))];
     all.extend(of_any(&fit_result.inferred));
@@ -22,7 +21,6 @@ pub fn tables(fit_result: &FitResult) -> Vec<Table> {
 }
 
 /// Tables that any fit has.
-#[must_use]
 pub fn of_any(fit_result: &Inferred) -> Vec<Table> {
     let parameters = &fit_result.parameters;
     let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();

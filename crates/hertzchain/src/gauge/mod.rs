@@ -72,7 +72,6 @@ pub fn run_gauge(
 
 impl GaugeResult {
     /// What speaks against believing it.
-    #[must_use]
     pub fn doubts(&self) -> Option<String> {
         let form = self.form.as_ref().and_then(PowerForm::doubts);
         let all = form.into_iter().chain(self.gauge.doubts(&self.verdict));
@@ -80,7 +79,6 @@ impl GaugeResult {
     }
 
     /// What to add to data that do not separate K and A, if nothing else does.
-    #[must_use]
     pub fn to_add(&self) -> Option<&'static str> {
         self.gauge.to_add().filter(|_| self.form.is_none())
     }
@@ -102,8 +100,7 @@ pub fn models(arguments: &Arguments, cases: [&str; 2]) -> Result<[Experiment; 2]
 }
 
 /// That models which were not named are those of the paper.
-#[must_use]
-pub fn assumed_models(wet_is_named: bool, dry_is_named: bool) -> Option<String> {
+pub(crate) fn assumed_models(wet_is_named: bool, dry_is_named: bool) -> Option<String> {
     let wet = "--model FILE or --preset NAME";
     let dry = "--dry-model FILE or --dry-preset NAME";
     let wet = (!wet_is_named)
@@ -127,7 +124,7 @@ pub fn data(file: &Path, measured: &Measured, case: Option<&str>) -> Result<Data
 ///
 /// # Errors
 /// A table that can't be used.
-pub fn all_oils(file: Option<&Path>) -> Result<Vec<Oil>, Failure> {
+pub(crate) fn all_oils(file: Option<&Path>) -> Result<Vec<Oil>, Failure> {
     let mut all = known_oils().map_err(|error| Failure::Ours(error.to_string()))?;
     if let Some(file) = file {
         let unread = |error| Failure::User(format!("--oils {}: {error}", file.display()));

@@ -9,7 +9,6 @@ use hertzchain_infer::gauge::{
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
-#[must_use]
 pub fn json(run_gauge: &GaugeResult) -> Value {
     let gauge = &run_gauge.gauge;
     let names = gauge.dry().parameters().iter().enumerate();

@@ -8,7 +8,6 @@ use hertzchain_infer::gauge::{
 };
 
 /// Every table: files' names and what stands in them.
-#[must_use]
 pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
     let mut all = vec![
         ("summary.csv", summary(run_gauge)),

@@ -85,7 +85,11 @@ const PROBE: u64 = 4096;
 const SPEEDS: &str = "speed_m_s";
 
 /// The same of another case.
-pub fn data_of(file: &Path, measured: &Measured, case: Option<String>) -> Result<Data, Failure> {
+pub(crate) fn data_of(
+    file: &Path,
+    measured: &Measured,
+    case: Option<String>,
+) -> Result<Data, Failure> {
     let text = text(file)
         .map_err(|error| Failure::User(format!("{} can't be read: {error}", file.display())))?;
     parsed(&file.display().to_string(), &text, measured, case)
@@ -123,7 +127,6 @@ fn scatter(measured: &Measured) -> Scatter {
 }
 
 /// What is assumed of data that do not say all: for warnings.
-#[must_use]
 pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
     let all = [
         exact_speeds(data, measured),
@@ -136,7 +139,6 @@ pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
 }
 
 /// How standard errors are widened that come from few shots.
-#[must_use]
 pub fn widened(data: &Data) -> Option<String> {
     let (rows, [least, most]) = data.widened()?;
     let freedom = match least == most {
@@ -247,7 +249,6 @@ pub fn opened(
 const USUAL: &str = "dry";
 
 /// That a model which was not named is the paper's dry chain: the first line of what comes of it.
-#[must_use]
 pub fn assumed_model(modelled: &Modelled) -> Option<String> {
     let is_named = modelled.model.is_some() || modelled.preset.is_some();
     let options = "--model FILE or --preset NAME";
@@ -255,7 +256,7 @@ pub fn assumed_model(modelled: &Modelled) -> Option<String> {
 }
 
 /// The same with a preset where neither is named.
-pub fn opened_or(
+pub(crate) fn opened_or(
     (file, preset): (Option<&Path>, &Option<String>),
     usual: &str,
     case: &str,
@@ -295,37 +296,49 @@ pub fn experiment(modelled: &Modelled, case: Option<&str>) -> Result<Experiment,
     changed(experiment, &modelled.set)
 }
 
-/// An experiment with numbers set.
+/// An experiment with numbers set, by path or by a short name of `--free`.
 ///
 /// # Errors
 /// A name or a value that does not fit.
 pub fn changed(mut experiment: Experiment, sets: &[Assignment]) -> Result<Experiment, Failure> {
     for set in sets {
-        let changed = experiment.set_text(&[(&set.name, &set.text)]);
-        experiment = changed.map_err(|error| match error {
-            PathError::Mistakes(mistakes) => mistakes.into(),
-            PathError::Unknown { .. } => unknown(&experiment, &set.name, &error),
-            other => Failure::User(format!("--set {}: {other}", set.name)),
+        let changed = match experiment.set_text(&[(&set.name, &set.text)]) {
+            Err(PathError::Unknown { .. }) => set_short_name(&experiment, set)?,
+            changed => changed,
+        };
+        experiment = changed.map_err(|error| {
+            let why = match &error {
+                // What stands in the file was right before: the place is on the command line.
+                PathError::Mistakes(mistakes) => {
+                    let all = mistakes.findings().iter();
+                    all.map(|one| format!("{one}; {}", one.label())).collect::<Vec<_>>().join("\n")
+                }
+                other => other.to_string(),
+            };
+            Failure::User(format!("--set {set}: {why}"))
         })?;
     }
     Ok(experiment)
 }
 
-/// That a number to be set is not there; of a short name that --free knows, its path.
-fn unknown(experiment: &Experiment, name: &str, error: &PathError) -> Failure {
-    let found = FreeNumber::find(experiment, name, Some(1.0));
-    let why = match found.as_ref().map(FreeNumber::path) {
-        Ok(Some(path)) => format!(
-            "--set takes paths of the experiment file, and `{name}` is a short name of --free: write --set {path}=VALUE"
-        ),
-        Ok(None) => format!("`{name}` is no number of the experiment file: --free alone knows it"),
-        Err(InferError::Ambiguous { .. }) => format!(
-            "--set takes paths of the experiment file, and `{name}` is a short name of --free for several of its numbers: \
-             `hertzchain schema` lists what paths there are"
-        ),
-        Err(_) => error.to_string(),
+/// Sets the number of a short name; a law of the striker's speed becomes constant.
+fn set_short_name(
+    experiment: &Experiment,
+    set: &Assignment,
+) -> Result<Result<Experiment, PathError>, Failure> {
+    let found = FreeNumber::find(experiment, &set.name, Some(1.0));
+    let found = found.map_err(|error| Failure::User(format!("--set {set}: {error}")))?;
+    let Some(path) = found.path() else {
+        return Err(Failure::User(format!(
+            "--set {set}: `{}` is no number of the experiment file: --free alone knows it",
+            set.name
+        )));
     };
-    Failure::User(format!("--set {name}: {why}"))
+    let value = (path, set.text.as_str());
+    Ok(match path.strip_suffix(".prefactor") {
+        Some(law) => experiment.set_text(&[value, (&format!("{law}.exponent"), "0")]),
+        None => experiment.set_text(&[value]),
+    })
 }
 
 /// A model with its free numbers.

@@ -13,7 +13,6 @@ fn all(model: &Model) -> impl Iterator<Item = (&str, &Reference)> {
 
 /// Which contact each free K or A is the value of, and what the others of its section have,
 /// a sentence each.
-#[must_use]
 pub fn references(model: &Model) -> Vec<String> {
     let experiment = model.experiment();
     all(model).map(|(name, reference)| sentence(name, reference, experiment.beads())).collect()
@@ -27,7 +26,6 @@ pub(super) fn of_unlike(experiment: &Experiment, path: &str) -> Option<String> {
 }
 
 /// For programs.
-#[must_use]
 pub fn references_json(model: &Model) -> Value {
     let one = |(name, reference): (&str, &Reference)| {
         json!({

@@ -3,12 +3,11 @@
 
 use crate::options::Assignment;
 use crate::quantity::digits;
-use hertzchain_experiment::{Experiment, Place};
+use hertzchain_experiment::{Experiment, NamedNumber};
 use hertzchain_infer::{FreeNumber, Model};
 
 /// What it means that a number on which a unit depends, such as the n of F = k δ^n,
 /// is free or set, one sentence for each number in that unit.
-#[must_use]
 pub fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
     let experiment = model.experiment();
     let free = model.numbers().as_slice().iter().map(|n| n.name());
@@ -34,7 +33,6 @@ pub fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
 
 /// That friction holds other loads on a pushed row than the model's equilibrium has, and how much
 /// they may differ; nothing where the push is free.
-#[must_use]
 pub fn held_loads(model: &Model) -> Option<String> {
     let experiment = model.experiment();
     let (chain, _) = experiment.chain(None).ok()?;
@@ -91,7 +89,7 @@ fn paths<'a>(experiment: &Experiment, names: impl Iterator<Item = &'a str>) -> V
     names.filter_map(path).collect()
 }
 
-fn follows(steering: &str, follower: &Place) -> String {
+fn follows(steering: &str, follower: &NamedNumber) -> String {
     format!(
         "{} and {steering}, on which its unit depends, are both free: its number is in the SI unit that \
          follows from the fitted {}, not in {}",
@@ -101,7 +99,7 @@ fn follows(steering: &str, follower: &Place) -> String {
     )
 }
 
-fn stays(steering: &str, follower: &Place, is_free: bool) -> String {
+fn stays(steering: &str, follower: &NamedNumber, is_free: bool) -> String {
     let (how, unit) = match is_free {
         true => ("free", format!("{} where the fit starts, another elsewhere", follower.unit)),
         false => ("set", format!("now {}", follower.unit)),

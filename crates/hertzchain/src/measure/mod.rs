@@ -285,7 +285,6 @@ fn method(picking: &Picking) -> Method {
 }
 
 /// How shots become curves.
-#[must_use]
 pub fn grouping(arguments: &Arguments) -> Grouping {
     Grouping {
         gap_m_s: arguments.speed_gap.0,

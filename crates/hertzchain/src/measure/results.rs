@@ -9,7 +9,6 @@ use serde_json::{Value, json};
 use std::io;
 
 /// Shots, curves, ratios and what was refused.
-#[must_use]
 pub fn json(measured: &Measurement, curves: &Curves) -> Value {
     let all = serde_json::to_value(Report { measured, curves });
     all.expect("texts, numbers and lists of them are JSON")

@@ -208,7 +208,6 @@ impl FitOptions {
     /// use hertzchain::options::FitOptions;
     /// assert_eq!(FitOptions::free(["eta", "B"]).freed.free, ["eta", "B"]);
     /// ```
-    #[must_use]
     pub fn free<T: Into<String>>(names: impl IntoIterator<Item = T>) -> Self {
         let mut options = Self::default();
         options.freed.free = names.into_iter().map(Into::into).collect();
@@ -218,8 +217,7 @@ impl FitOptions {
 
 impl RecordOptions {
     /// Whether an option says something of how files are to be read as recordings.
-    #[must_use]
-    pub fn describes_files(&self) -> bool {
+    pub(crate) fn describes_files(&self) -> bool {
         self.shots.is_some() || self.rate.is_some() || !self.channel.is_empty()
     }
 }
@@ -246,7 +244,6 @@ pub enum Filter {
 
 impl Filter {
     /// Order and kind as an experiment file names them.
-    #[must_use]
     pub const fn names(self) -> (&'static str, Option<&'static str>) {
         let (butterworth, bessel) = (Some("butterworth"), Some("bessel"));
         match self {

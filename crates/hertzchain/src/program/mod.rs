@@ -23,7 +23,6 @@ const INTERRUPTED: i32 = 130;
 ///
 /// It prints and writes as the program does, ends the process itself for `--help` and for arguments
 /// that it rejects, and ends it at Ctrl-C with exit code 130.
-#[must_use]
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     end_on_interrupt();
     let program = Program::parse_from(arguments);

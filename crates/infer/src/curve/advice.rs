@@ -44,7 +44,6 @@ pub struct Prospect {
 
 impl Advice {
     /// One sentence a line, most useful first.
-    #[must_use]
     pub fn words(&self) -> Vec<String> {
         let (helpful, idle): (Vec<&Prospect>, Vec<&Prospect>) =
             (self.prospects.iter()).partition(|prospect| prospect.determined > self.now.determined);
@@ -113,7 +112,6 @@ impl CurveProblem {
     /// What could be measured or fixed so that the data determine more: candidates
     /// are evaluated by the derivatives that they would add at a fit's optimum. Those
     /// whose curves cannot be computed are left out.
-    #[must_use]
     pub fn suggested_measurements(&self, fit: &Fit) -> Advice {
         let sized = sized(self.parameters(), &fit.point);
         let own = Scaled::of(&sized, &fit.jacobian);

@@ -68,7 +68,6 @@ const USUAL_RATIO_ERROR: f64 = 0.005;
 
 impl ExpectedErrors {
     /// As in data taken so far: medians.
-    #[must_use]
     pub fn like(data: &Data) -> Self {
         let of = |times: bool| {
             let rows = data.rows.iter();

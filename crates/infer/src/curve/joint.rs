@@ -42,7 +42,6 @@ impl Part {
 
 impl Joint {
     /// Parts that share these parameters.
-    #[must_use]
     pub fn new(parameters: Vec<Parameter>, parts: Vec<Part>) -> Self {
         Self { parameters, parts }
     }

@@ -25,7 +25,6 @@ pub struct Speeds {
 
 impl Speeds {
     /// One speed a row.
-    #[must_use]
     pub fn of_rows(speeds_m_s: &[f64]) -> Self {
         Self { at: speeds_m_s.iter().copied().enumerate().collect(), rows: speeds_m_s.len() }
     }
@@ -74,7 +73,6 @@ impl Model {
     }
 
     /// The same model at another accuracy.
-    #[must_use]
     pub fn with_accuracy(mut self, accuracy: f64) -> Self {
         self.accuracy = accuracy;
         self
@@ -83,7 +81,6 @@ impl Model {
     /// The same ten times as accurate, for derivatives: where the solver takes another
     /// number of steps its error jumps, by 2e-7 of a time of flight at the usual accuracy, which
     /// is a few percent of what a step of differences changes at some of the speeds.
-    #[must_use]
     pub(super) fn for_slopes(self) -> Self {
         let accuracy = (0.1 * self.accuracy).max(Self::FINEST).min(self.accuracy);
         self.with_accuracy(accuracy)
@@ -104,13 +101,11 @@ impl Model {
     }
 
     /// Its free numbers.
-    #[must_use]
     pub fn numbers(&self) -> &FreeNumbers {
         &self.numbers
     }
 
     /// The experiment that its parameters change.
-    #[must_use]
     pub fn experiment(&self) -> &Experiment {
         &self.experiment
     }
@@ -118,7 +113,6 @@ impl Model {
     /// Predictions at all speeds for every point.
     ///
     /// A point that fails at one speed has no curve: its error says where and why.
-    #[must_use]
     pub fn curves(
         &self,
         points: &[Vec<f64>],

@@ -57,7 +57,6 @@ impl CurveProblem {
 
     /// Part of a [`Joint`](super::Joint): other parts, or fixed values, may determine
     /// what these data do not.
-    #[must_use]
     pub fn part(model: Model, data: Data) -> Self {
         let parameters = model.numbers().parameters(&data.speeds_m_s());
         Self::unchecked(model, data, parameters)
@@ -76,13 +75,11 @@ impl CurveProblem {
     }
 
     /// The model.
-    #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
     }
 
     /// The data.
-    #[must_use]
     pub fn data(&self) -> &Data {
         &self.data
     }
@@ -90,7 +87,6 @@ impl CurveProblem {
     /// Of everything that residuals follow from: the experiment as it is
     /// understood, its free numbers, the data, accuracy and instruction set, this
     /// build of the program; not where the data lie.
-    #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
         let rows = self.model.inputs("curve problem", &self.parameters);
         let row = |inputs: Inputs, row: &DataRow| inputs.text("row", &format!("{row:?}"));
@@ -98,7 +94,6 @@ impl CurveProblem {
     }
 
     /// The same problem with curves of another relative accuracy.
-    #[must_use]
     pub fn with_accuracy(mut self, accuracy: f64) -> Self {
         self.model = self.model.with_accuracy(accuracy);
         self
@@ -114,7 +109,6 @@ impl CurveProblem {
     }
 
     /// Predictions at the data's speeds, one set of rows a point.
-    #[must_use]
     pub fn curves(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Predicted>, ModelError>> {
         let speeds = Speeds::of_rows(&self.data.speeds_m_s());
         self.model.curves(points, &speeds)
@@ -164,7 +158,6 @@ impl CurveProblem {
     }
 
     /// Which row and observable each residual belongs to.
-    #[must_use]
     pub fn measured(&self) -> Vec<(usize, Observable)> {
         let rows = self.data.rows.iter().enumerate();
         rows.flat_map(|(at, row)| row.observables().map(move |of| (at, of))).collect()

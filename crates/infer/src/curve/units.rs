@@ -17,7 +17,6 @@ impl CurveProblem {
     /// The unit that speeds seem to be in, if it is not m/s: the model, where its parameters
     /// start, has the measured times of flight at speeds that many times slower, and not at
     /// those that stand in the table.
-    #[must_use]
     pub fn other_unit_of_speed(&self) -> Option<&'static str> {
         let near = |factor: f64| self.middle_miss(factor).is_some_and(|miss| miss.abs() < NEAR);
         if near(1.0) {

@@ -217,7 +217,7 @@ fn of_case(
 
 /// A column: its place and its title.
 #[derive(Clone, Debug, PartialEq)]
-struct Column {
+struct TableColumn {
     at: usize,
     title: String,
 }
@@ -225,20 +225,20 @@ struct Column {
 /// Columns of a measured quantity.
 #[derive(Clone, Debug, PartialEq)]
 struct Measured {
-    value: Column,
-    sigma: Option<Column>,
+    value: TableColumn,
+    sigma: Option<TableColumn>,
     /// Number of shots that it is the mean of.
-    count: Option<Column>,
+    count: Option<TableColumn>,
     /// The part of its error that all shots share, and that no scatter shows.
-    shared: Option<Column>,
+    shared: Option<TableColumn>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 struct Columns {
-    shots: Option<Column>,
+    shots: Option<TableColumn>,
     speed: Measured,
     observables: [Option<Measured>; 4],
-    correlation: Option<Column>,
+    correlation: Option<TableColumn>,
 }
 
 /// Times that `measure` takes to the mean speed, shot by shot, do not scatter with their speeds any
@@ -308,9 +308,9 @@ fn other_unit(titles: &[String], beginning: &str, unit: &str) -> String {
     })
 }
 
-fn find(titles: &[String], names: &[&str]) -> Option<Column> {
+fn find(titles: &[String], names: &[&str]) -> Option<TableColumn> {
     let at = names.iter().find_map(|name| titles.iter().position(|title| title == name))?;
-    Some(Column { at, title: titles[at].clone() })
+    Some(TableColumn { at, title: titles[at].clone() })
 }
 
 /// The column of a quantity, and that of its error: `x_s_err`, `x_err_s`, or the same with `error`
@@ -338,7 +338,6 @@ const MOST_TIME_S: f64 = 0.1;
 const MICROSECONDS_FROM: f64 = 20.0;
 
 /// What is wrong with a speed of a striker in m/s, if anything is.
-#[must_use]
 pub fn wrong_speed(value: f64) -> Option<String> {
     let is_fast = value > MOST_SPEED_M_S;
     // Further digits are rounding.
@@ -389,16 +388,21 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn wrong<T>(&self, line: u64, column: &Column, what: &str) -> Result<T, InferError> {
+    fn wrong<T>(&self, line: u64, column: &TableColumn, what: &str) -> Result<T, InferError> {
         InferError::input(format!("{}, line {line}, {}: {what}", self.file, column.title))
     }
 
-    fn check(&self, wrong: Option<String>, line: u64, column: &Column) -> Result<(), InferError> {
+    fn check(
+        &self,
+        wrong: Option<String>,
+        line: u64,
+        column: &TableColumn,
+    ) -> Result<(), InferError> {
         wrong.map_or(Ok(()), |what| self.wrong(line, column, &what))
     }
 
     /// The number in a cell, if there is one.
-    fn number(&self, record: &Record, column: &Column) -> Result<Option<f64>, InferError> {
+    fn number(&self, record: &Record, column: &TableColumn) -> Result<Option<f64>, InferError> {
         match record.cells.get(column.at) {
             None => Ok(None),
             Some(Ok(number)) => Ok(*number),
@@ -409,7 +413,7 @@ impl Reader<'_> {
     fn optional(
         &self,
         record: &Record,
-        column: Option<&Column>,
+        column: Option<&TableColumn>,
     ) -> Result<Option<f64>, InferError> {
         column.map_or(Ok(None), |column| self.number(record, column))
     }

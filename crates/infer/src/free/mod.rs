@@ -83,19 +83,16 @@ impl FreeNumber {
     }
 
     /// The name as asked, without its form.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// How it depends on speed.
-    #[must_use]
     pub fn form(&self) -> Form {
         self.form
     }
 
     /// Its parameters over data at these speeds in m/s, each called after it.
-    #[must_use]
     pub fn parameters(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
         let (value, exponent) = self.start;
         let (lower, upper) = self.bounds;
@@ -123,13 +120,11 @@ impl FreeNumber {
 
     /// Its path in the experiment file, or that of the law of speed whose prefactor it is;
     /// `None` of a number of the instruments.
-    #[must_use]
     pub fn path(&self) -> Option<&str> {
         self.target.path()
     }
 
     /// The contacts that a K or A holds for, and which of them has the value itself.
-    #[must_use]
     pub fn reference(&self) -> Option<&Reference> {
         self.reference.as_ref()
     }
@@ -141,7 +136,6 @@ impl FreeNumber {
     }
 
     /// How many parameters it has over so many speeds.
-    #[must_use]
     pub fn parameter_count(&self, speeds: usize) -> usize {
         match self.form {
             Form::Constant => 1,
@@ -162,7 +156,6 @@ impl FreeNumber {
 }
 
 /// Whether two names, each of an experiment, mean numbers at the same place.
-#[must_use]
 pub fn same_number(one: (&Experiment, &str), other: (&Experiment, &str)) -> bool {
     let target = |(experiment, name)| name::find(experiment, name).map(|found| found.target);
     matches!((target(one), target(other)), (Ok(one), Ok(other)) if one == other)
@@ -221,7 +214,6 @@ impl FreeNumbers {
     }
 
     /// The numbers, in the order in which their parameters stand.
-    #[must_use]
     pub fn as_slice(&self) -> &[FreeNumber] {
         &self.0
     }
@@ -232,7 +224,6 @@ impl FreeNumbers {
     }
 
     /// Parameters of all numbers over data at these speeds in m/s.
-    #[must_use]
     pub fn parameters(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
         let all = self.0.iter();
         all.flat_map(|number| number.parameters(speeds_m_s)).collect()

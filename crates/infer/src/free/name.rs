@@ -2,7 +2,7 @@
 
 use super::Settings;
 use crate::InferError;
-use hertzchain_experiment::{Experiment, Place};
+use hertzchain_experiment::{Experiment, NamedNumber};
 
 /// Short names: what each stands for, and the end of its path.
 pub const SHORT_NAMES: [(&str, &str, &str); 12] = [
@@ -111,7 +111,7 @@ pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, InferEr
 /// Friction between beads and track.
 const FRICTION: &str = "track.friction";
 
-fn of_place(name: &str, place: Place) -> Result<Found, InferError> {
+fn of_place(name: &str, place: NamedNumber) -> Result<Found, InferError> {
     if place.path == FRICTION {
         return InferError::input(format!(
             "{name} can't be fitted: the wave knows no friction, which acts between shots alone and decides how beads come \
@@ -143,14 +143,14 @@ fn of_short(
 ) -> Result<Found, InferError> {
     let places = experiment.places();
     let ends = [format!(".{end}"), format!(".{end}.prefactor")];
-    let own = |place: &&Place| {
+    let own = |place: &&NamedNumber| {
         let path = place.path.as_str();
         let contact = path.starts_with("contacts[") || path.starts_with("materials.");
         path == end || contact && ends.iter().any(|end| path.ends_with(end.as_str()))
     };
     let owners = owner.map(|owner| owner_paths(experiment, owner));
     let used = experiment.used_materials();
-    let of_owner = |place: &&Place| match &owners {
+    let of_owner = |place: &&NamedNumber| match &owners {
         // Of the chain: materials of other cases are not meant.
         None => {
             let path = place.path.strip_prefix("materials.");
@@ -158,16 +158,16 @@ fn of_short(
         }
         Some(owners) => owners.iter().any(|owner| place.path.starts_with(owner)),
     };
-    let fitting: Vec<&Place> = places.iter().filter(own).filter(of_owner).collect();
+    let fitting: Vec<&NamedNumber> = places.iter().filter(own).filter(of_owner).collect();
     let given = fitting.iter().filter(|place| place.value.is_some());
-    let given: Vec<&Place> = given.copied().collect();
+    let given: Vec<&NamedNumber> = given.copied().collect();
     let place = match (&given[..], &fitting[..]) {
         ([only], _) | ([], [only]) => *only,
         ([], []) => {
             return InferError::input(format!("{name}: this experiment has no {what}"));
         }
         ([], several) | (several, _) => {
-            let clear = |place: &&Place| clear_name(&place.path, short);
+            let clear = |place: &&NamedNumber| clear_name(&place.path, short);
             return Err(InferError::Ambiguous {
                 name: name.to_owned(),
                 candidates: several.iter().map(clear).collect(),

@@ -55,7 +55,6 @@ pub struct AtSpeed {
 
 impl AtSpeed {
     /// K in N/m^{3/2} and A in s, each with its standard error.
-    #[must_use]
     pub fn estimates(&self) -> [(f64, f64); 2] {
         [0, 1].map(|i| (self.ln[i].exp(), self.ln[i].exp() * self.ln_sd[i]))
     }
@@ -64,7 +63,6 @@ impl AtSpeed {
 impl PowerForm {
     /// K and A at a speed in m/s: ln K = ln K₀ + k ln v with the variance
     /// var(ln K₀) + 2 cov(ln K₀, k) ln v + var(k) ln² v; A likewise.
-    #[must_use]
     pub fn at(&self, speed_m_s: f64) -> AtSpeed {
         let (log, c) = (speed_m_s.ln(), &self.covariance);
         let variance = |i: usize| c[i][i] + 2.0 * c[i][i + 1] * log + c[i + 1][i + 1] * log * log;
@@ -76,14 +74,12 @@ impl PowerForm {
     }
 
     /// Standard errors of ln K₀, k, ln A₀, a.
-    #[must_use]
     pub fn sd(&self) -> [f64; LAWS] {
         [0, 1, 2, 3].map(|i| self.covariance[i][i].sqrt())
     }
 
     /// Whether four numbers and their covariance stand for both curves: these follow the laws and
     /// determine them.
-    #[must_use]
     pub fn is_sufficient(&self) -> bool {
         self.fits() && self.is_determined()
     }
@@ -98,7 +94,6 @@ impl PowerForm {
     }
 
     /// Warnings on the laws: curves that do not follow them, or do not determine them.
-    #[must_use]
     pub fn doubts(&self) -> Option<String> {
         let mut doubts = Vec::new();
         if !self.fits() {

@@ -10,7 +10,7 @@ mod rows;
 mod scan;
 
 pub use form::{AtSpeed, LAWS, PowerForm};
-pub use oils::{Description, Law, Oil, known_oils, oils};
+pub use oils::{Description, Oil, OilLaw, known_oils, oils};
 pub use rows::{Branch, Combination, Contact, Pair, WetRow, is_determined};
 pub use scan::Scan;
 
@@ -107,37 +107,31 @@ impl Gauge {
     }
 
     /// The dry curve against its model.
-    #[must_use]
     pub fn dry(&self) -> &CurveProblem {
         &self.dry
     }
 
     /// How well the dry curve follows its model.
-    #[must_use]
     pub fn dry_goodness(&self) -> Goodness {
         Goodness::new(&self.dry, &self.dry_fit)
     }
 
     /// Reduced radius of the wet contacts in m.
-    #[must_use]
     pub fn wet_radius_m(&self) -> f64 {
         self.radius_m
     }
 
     /// The wet chain's model.
-    #[must_use]
     pub fn wet_model(&self) -> &Model {
         &self.wet
     }
 
     /// The wet data.
-    #[must_use]
     pub fn wet(&self) -> &Data {
         &self.data
     }
 
     /// The wet chain's nuisance parameters over these speeds in m/s, as its model has them.
-    #[must_use]
     pub fn wet_own(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
         let numbers = self.wet.numbers().as_slice();
         let end = numbers.len() - CONTACT;
@@ -155,7 +149,6 @@ impl Gauge {
     }
 
     /// What to add to data that do not separate K from A.
-    #[must_use]
     pub fn to_add(&self) -> Option<&'static str> {
         let has_both = self.data.rows.iter().any(|row| row.observables().count() > 1);
         (!has_both && !self.data.has(Observable::Reflected)).then_some(
@@ -167,7 +160,6 @@ impl Gauge {
 
     /// Warnings on the verdict: a dry curve that its model does not describe, or a pushed row of no
     /// known oil whose load is taken from the file, or compared by its reflected times too.
-    #[must_use]
     pub fn doubts(&self, verdict: &Verdict) -> Option<String> {
         let chi_square = self.dry_goodness().chi_square;
         let rejected = chi_square.filter(|found| found.probability < LEAST_PROBABILITY);
@@ -246,7 +238,6 @@ pub const NEVER: f64 = 1e-9;
 
 impl Match {
     /// Whether the data allow the oil (p ≥ 0.01).
-    #[must_use]
     pub fn fits(&self) -> bool {
         self.chi_square.probability >= LEAST_PROBABILITY
     }
@@ -281,7 +272,6 @@ impl Verdict {
     }
 
     /// The verdict in a sentence.
-    #[must_use]
     pub fn sentence(&self) -> String {
         let names: Vec<&str> = self.allowed().map(|found| found.oil.as_str()).collect();
         match (&names[..], self.matches.first()) {

@@ -10,14 +10,14 @@ const KNOWN: &str = include_str!("../../data/oils.csv");
 
 /// prefactor · v^exponent of the striker's speed v in m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Law {
+pub struct OilLaw {
     /// Value at 1 m/s.
     pub prefactor: f64,
     /// Exponent.
     pub exponent: f64,
 }
 
-impl Law {
+impl OilLaw {
     fn at(self, speed_m_s: f64) -> f64 {
         self.prefactor * speed_m_s.powf(self.exponent)
     }
@@ -31,16 +31,16 @@ pub enum Description {
         /// Young modulus in Pa.
         young_modulus_pa: f64,
         /// Poisson ratio.
-        poisson_ratio: Law,
+        poisson_ratio: OilLaw,
         /// Viscosity in Pa s, shear and bulk alike.
-        viscosity_pa_s: Law,
+        viscosity_pa_s: OilLaw,
     },
     /// By the contact's own numbers.
     Contact {
         /// Hertz stiffness K in N/m^{3/2}.
-        stiffness: Law,
+        stiffness: OilLaw,
         /// Relaxation time A in s.
-        relaxation_s: Law,
+        relaxation_s: OilLaw,
     },
 }
 
@@ -58,7 +58,6 @@ pub struct Oil {
 impl Oil {
     /// K in N/m^{3/2} and A in s of a contact of spheres with this reduced radius
     /// R* in m, at a speed of the striker in m/s.
-    #[must_use]
     pub fn contact(&self, reduced_radius_m: f64, speed_m_s: f64) -> (f64, f64) {
         match self.description {
             Description::Contact { stiffness, relaxation_s } => {
@@ -150,14 +149,14 @@ impl Row<'_> {
     }
 
     /// A power law of two columns; its exponent is 0 where none stands.
-    fn law(&self, prefactor: &str, exponent: &str) -> Result<Option<Law>, String> {
+    fn law(&self, prefactor: &str, exponent: &str) -> Result<Option<OilLaw>, String> {
         let exponent = self.number(exponent)?.unwrap_or(0.0);
         match self.number(prefactor)? {
             None => Ok(None),
             Some(value) if prefactor == "poisson_prefactor" && value >= BELOW => Err(format!(
                 "{prefactor} is {value}, the Poisson ratio at 1 m/s; expected less than {BELOW}"
             )),
-            Some(value) if value > 0.0 => Ok(Some(Law { prefactor: value, exponent })),
+            Some(value) if value > 0.0 => Ok(Some(OilLaw { prefactor: value, exponent })),
             Some(value) => Err(format!("{prefactor} is {value}; expected more than 0")),
         }
     }

@@ -52,14 +52,12 @@ pub struct Pair {
 const REACH: f64 = 2.0;
 
 /// Whether a positive number is known well enough to be reported with its standard error.
-#[must_use]
 pub fn is_determined(value: f64, standard_error: f64) -> bool {
     REACH * standard_error < value
 }
 
 impl Pair {
     /// Whole covariance of ln K and ln A.
-    #[must_use]
     pub fn covariance(&self) -> [[f64; 2]; 2] {
         let mut sum = self.own;
         for shift in &self.shared {
@@ -71,7 +69,6 @@ impl Pair {
     }
 
     /// K in N/m^{3/2} (or the combination) and A in s, each with its standard error.
-    #[must_use]
     pub fn estimates(&self) -> [(f64, f64); 2] {
         let covariance = self.covariance();
         [0, 1].map(|i| {
@@ -94,7 +91,6 @@ pub enum Branch {
 
 impl Branch {
     /// What it is called.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Only => "only",
@@ -115,13 +111,11 @@ pub struct Combination {
 
 impl Contact {
     /// Whether both numbers are known, and on which branch.
-    #[must_use]
     pub fn is_known(&self) -> bool {
         self.combination.is_none() && self.branch != Branch::Unknown
     }
 
     /// All solutions, the smallest A first.
-    #[must_use]
     pub fn pairs(&self) -> Vec<&Pair> {
         let mut all: Vec<&Pair> = std::iter::once(&self.first).chain(&self.others).collect();
         all.sort_by(|a, b| a.ln[1].total_cmp(&b.ln[1]));
@@ -137,7 +131,7 @@ pub(super) enum Free {
 }
 
 /// A solution of a row with the fit's results.
-struct Solution {
+struct GaugeSolution {
     point: [f64; 2],
     covariance: Covariance,
     chi_square: f64,
@@ -150,11 +144,10 @@ struct Solution {
 
 /// All solutions of a row, the smallest A first, at least one, and the range searched; or why there
 /// is none.
-type Solved = Result<(Vec<Solution>, Option<Scan>), String>;
+type Solved = Result<(Vec<GaugeSolution>, Option<Scan>), String>;
 
 impl Gauge {
     /// K and A of the wet contacts at each speed of the wet data.
-    #[must_use]
     pub fn rows(&self) -> Vec<WetRow> {
         // What follows them moves nothing but the dry chain's own numbers.
         let shifts = shifts(&self.dry_covariance.matrix);
@@ -204,7 +197,7 @@ impl Gauge {
     fn contact(
         &self,
         row: usize,
-        (mut solutions, scan): (Vec<Solution>, Option<Scan>),
+        (mut solutions, scan): (Vec<GaugeSolution>, Option<Scan>),
         chosen: Chosen,
         shifted: &[Vec<f64>],
     ) -> Result<Contact, InferError> {
@@ -214,7 +207,7 @@ impl Gauge {
             (_, true) => Branch::Smooth,
             (_, false) => Branch::Unknown,
         };
-        let other = |solution: Solution| {
+        let other = |solution: GaugeSolution| {
             self.pair(row, &solution, shifted).unwrap_or_else(|_| Pair {
                 ln: solution.point.map(f64::ln),
                 own: [[f64::INFINITY, 0.0], [0.0, f64::INFINITY]],
@@ -237,7 +230,7 @@ impl Gauge {
     fn pair(
         &self,
         row: usize,
-        solution: &Solution,
+        solution: &GaugeSolution,
         shifted: &[Vec<f64>],
     ) -> Result<Pair, InferError> {
         let point = solution.point;
@@ -314,7 +307,7 @@ impl Gauge {
         let (starts, scan) = scanned.unzip();
         let along = |start| self.solve(row, Free::StiffnessAlone, dry, start);
         let [stiffness, relaxation] = self.dry_contact;
-        let solved: Vec<Result<Solution, InferError>> = match (starts, free) {
+        let solved: Vec<Result<GaugeSolution, InferError>> = match (starts, free) {
             (Some(starts), _) => {
                 let starts = starts.into_iter().take(POLISHED);
                 starts.map(|start| self.solve(row, free, dry, start)).collect()
@@ -327,7 +320,7 @@ impl Gauge {
                 .map(|found| self.solve(row, free, dry, found?.point))
                 .collect(),
         };
-        let allowed = |solution: Result<Solution, InferError>| match free {
+        let allowed = |solution: Result<GaugeSolution, InferError>| match free {
             Free::Both => self.allow_for_dry_errors(row, solution?, shifted),
             Free::StiffnessAlone => solution,
         };
@@ -339,9 +332,9 @@ impl Gauge {
     fn allow_for_dry_errors(
         &self,
         row: usize,
-        mut solution: Solution,
+        mut solution: GaugeSolution,
         shifted: &[Vec<f64>],
-    ) -> Result<Solution, InferError> {
+    ) -> Result<GaugeSolution, InferError> {
         let mut moves = Vec::new();
         for dry in shifted {
             let problem = self.row_problem(row, (Free::Both, solution.point), dry);
@@ -360,7 +353,7 @@ impl Gauge {
         free: Free,
         dry: &[f64],
         start: [f64; 2],
-    ) -> Result<Solution, InferError> {
+    ) -> Result<GaugeSolution, InferError> {
         let problem = self.row_problem(row, (free, start), dry);
         // Two equations with two unknowns are solved in some ten iterations, to a thousandth of a
         // standard error.
@@ -368,7 +361,7 @@ impl Gauge {
         let fit_result = fit(&problem, &how)?;
         let columns = fit_result.jacobian.columns.iter().zip(&fit_result.point);
         let slopes = columns.map(|(column, at)| column.iter().map(|slope| slope * at).collect());
-        Ok(Solution {
+        Ok(GaugeSolution {
             covariance: Covariance::new(problem.parameters(), &fit_result),
             point: [fit_result.point[0], fit_result.point.get(1).copied().unwrap_or(start[1])],
             chi_square: fit_result.chi_square(),
@@ -379,7 +372,6 @@ impl Gauge {
     }
 
     /// A statement on rows with more than one solution.
-    #[must_use]
     pub fn ambiguous(&self, rows: &[WetRow]) -> Option<String> {
         let solved =
             || rows.iter().filter_map(|row| Some((row.speed_m_s, row.contact.as_ref().ok()?)));
@@ -438,12 +430,12 @@ const SMALL: f64 = 0.05;
 /// Of what starts came to, the smallest A first, each solution once that `values` numbers do not
 /// reject.
 fn distinct(
-    solved: Vec<Result<Solution, InferError>>,
+    solved: Vec<Result<GaugeSolution, InferError>>,
     values: usize,
     free: Free,
-) -> Result<Vec<Solution>, String> {
+) -> Result<Vec<GaugeSolution>, String> {
     let (found, failed): (Vec<_>, Vec<_>) = solved.into_iter().partition(Result::is_ok);
-    let mut found: Vec<Solution> = found.into_iter().flatten().collect();
+    let mut found: Vec<GaugeSolution> = found.into_iter().flatten().collect();
     let count = found.len();
     found.retain(|solution| !solution.is_beyond);
     found.sort_by(|a, b| a.chi_square.total_cmp(&b.chi_square));
@@ -468,9 +460,9 @@ fn distinct(
         ));
     }
     let most = best.chi_square + NOT_WORSE;
-    let mut distinct: Vec<Solution> = Vec::new();
+    let mut distinct: Vec<GaugeSolution> = Vec::new();
     for solution in found {
-        let same = |other: &Solution| (solution.point[1] / other.point[1]).ln().abs() < SAME;
+        let same = |other: &GaugeSolution| (solution.point[1] / other.point[1]).ln().abs() < SAME;
         let fits = solution.chi_square < most && follows(solution.chi_square);
         if (fits || distinct.is_empty()) && !distinct.iter().any(same) {
             distinct.push(solution);

@@ -22,7 +22,6 @@ pub struct Scan {
 
 impl Scan {
     /// Whether the line could be followed all the way.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.missing_s.is_empty()
     }

@@ -16,7 +16,7 @@ type Around = (Vec<f64>, Vec<Result<Residuals, ModelError>>);
 pub(crate) struct Descent<'a> {
     merit: Merit<'a>,
     free: Vec<usize>,
-    limits: Limits,
+    limits: DescentLimits,
     pub point: Vec<f64>,
     /// Residuals there; `None` if the model failed at the first point.
     pub at: Option<Valued>,
@@ -39,7 +39,7 @@ pub(crate) struct Descent<'a> {
 /// When a descent ends: expected fall of the cost at which the minimum counts as reached, and most
 /// iterations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Limits {
+pub(crate) struct DescentLimits {
     pub tolerance: f64,
     pub iterations: usize,
 }
@@ -79,7 +79,6 @@ pub enum Ending {
 
 impl Ending {
     /// Whether the point reached is a minimum, as far as the model is smooth.
-    #[must_use]
     pub fn converged(&self) -> bool {
         matches!(self, Self::Minimum | Self::Floor { .. } | Self::Open { .. })
     }
@@ -165,7 +164,12 @@ const IDLE: usize = 3;
 
 impl<'a> Descent<'a> {
     /// A descent from `point` over the parameters `free`.
-    pub(crate) fn new(merit: Merit<'a>, point: Vec<f64>, free: Vec<usize>, limits: Limits) -> Self {
+    pub(crate) fn new(
+        merit: Merit<'a>,
+        point: Vec<f64>,
+        free: Vec<usize>,
+        limits: DescentLimits,
+    ) -> Self {
         let parameters = merit.problem.parameters();
         let steps: Vec<f64> = parameters.iter().map(|p| FIRST_STEP * p.scale).collect();
         Self {

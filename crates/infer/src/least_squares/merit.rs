@@ -44,7 +44,6 @@ const LEAST_CURVATURE: f64 = 0.1;
 
 impl Loss {
     /// What it is called.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Squares => "squares",
@@ -55,7 +54,6 @@ impl Loss {
     }
 
     /// Where it turns, in standard deviations; 1 for squares, which turn nowhere.
-    #[must_use]
     pub const fn scale(self) -> f64 {
         match self {
             Self::Squares => 1.0,
@@ -317,14 +315,12 @@ pub struct Jacobian {
 impl Jacobian {
     /// The parameter on whose derivatives both step sizes agree least, and by which share they
     /// differ.
-    #[must_use]
     pub fn least_agreeing(&self) -> Option<(usize, f64)> {
         let numbered = self.disagreement.iter().copied().enumerate();
         numbered.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Largest disagreement of any parameter.
-    #[must_use]
     pub fn worst_disagreement(&self) -> f64 {
         self.disagreement.iter().copied().fold(0.0, f64::max)
     }

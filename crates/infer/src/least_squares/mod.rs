@@ -12,7 +12,7 @@ use crate::identify::{directions, is_weak, sized};
 use crate::linear::{dot, norm, svd};
 use crate::random::{Purpose, RandomStream};
 use crate::{InferError, ModelError, Parameter, Prior, Problem, Residuals};
-use descent::{Limits, NOTICED, SMALL_FALL};
+use descent::{DescentLimits, NOTICED, SMALL_FALL};
 use merit::{Linear, jacobian};
 
 /// Options of [`fit`].
@@ -55,8 +55,8 @@ impl Fitting {
         }
     }
 
-    pub(crate) fn limits(&self) -> Limits {
-        Limits { tolerance: self.tolerance, iterations: self.iterations }
+    pub(crate) fn limits(&self) -> DescentLimits {
+        DescentLimits { tolerance: self.tolerance, iterations: self.iterations }
     }
 }
 
@@ -123,13 +123,11 @@ const APART: f64 = 3.0;
 
 impl Fit {
     /// Σ r² of the data.
-    #[must_use]
     pub fn chi_square(&self) -> f64 {
         dot(&self.residuals, &self.residuals)
     }
 
     /// How many of the starts came to this minimum: within 0.01 of its cost.
-    #[must_use]
     pub fn agreeing_starts(&self) -> usize {
         let agrees = |s: &&Started| s.cost <= self.cost + SAME_COST;
         self.starts.iter().filter(agrees).count()
@@ -138,7 +136,6 @@ impl Fit {
     /// Minima that other starts came to and that fit as well: their χ² lies at most 9 above the
     /// best, and some parameter differs by more than three of these standard errors from the best
     /// minimum and from those before. Best first; each with the number of its starts.
-    #[must_use]
     pub fn other_minima(&self, sd: &[f64]) -> Vec<(&Started, usize)> {
         let apart = |one: &[f64], other: &[f64]| {
             // A parameter held by a bound has no standard error.
@@ -164,14 +161,12 @@ impl Fit {
     }
 
     /// How many residuals are farther out than where the loss stops being a square.
-    #[must_use]
     pub fn beyond_loss(&self) -> usize {
         let beyond = |r: &&f64| self.loss != Loss::Squares && r.abs() > self.loss.scale();
         self.residuals.iter().filter(beyond).count()
     }
 
     /// Whether a parameter is held by a bound.
-    #[must_use]
     pub fn is_bound(&self, parameter: usize) -> bool {
         self.binding.iter().any(|b| b.parameter == parameter)
     }

@@ -127,26 +127,22 @@ impl PulseProblem {
     }
 
     /// The same with a model of another relative accuracy.
-    #[must_use]
     pub fn with_accuracy(mut self, accuracy: f64) -> Self {
         self.model = self.model.with_accuracy(accuracy);
         self
     }
 
     /// Records of which the model, where it starts, has no pulses to compare with, and why.
-    #[must_use]
     pub fn left_out(&self) -> &[String] {
         &self.left_out
     }
 
     /// The records.
-    #[must_use]
     pub fn records(&self) -> &[Pulses] {
         &self.records
     }
 
     /// The model.
-    #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -154,7 +150,6 @@ impl PulseProblem {
     /// Of everything that residuals follow from: the experiment as it is understood,
     /// amplifier among it, its free numbers, the records, accuracy and instruction set, this
     /// build of the program; not where the records lie.
-    #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
         let all = self.model.inputs("pulse problem", &self.parameters);
         let record = |all: Inputs, record: &Pulses| {
@@ -171,7 +166,6 @@ impl PulseProblem {
     }
 
     /// Numbers fitted to single records: offsets, moments and errors of speeds.
-    #[must_use]
     pub fn nuisance_count(&self) -> usize {
         self.records.iter().map(Pulses::nuisance_count).sum()
     }

@@ -216,37 +216,31 @@ impl Chain {
     }
 
     /// Names of the parameters.
-    #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
     /// Steps so far.
-    #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
     /// Walkers of all ensembles.
-    #[must_use]
     pub fn walkers(&self) -> usize {
         self.places.len()
     }
 
     /// Steps between stored ones.
-    #[must_use]
-    pub fn keep_every(&self) -> u64 {
+    pub(crate) fn keep_every(&self) -> u64 {
         self.keep_every
     }
 
     /// Share of proposals that were accepted.
-    #[must_use]
     pub fn acceptance(&self) -> f64 {
         self.accepted as f64 / self.proposed()
     }
 
     /// Share of proposals at which the model failed.
-    #[must_use]
     pub fn failures(&self) -> f64 {
         self.failed as f64 / self.proposed()
     }

@@ -21,7 +21,6 @@ const WINDOW: f64 = 5.0;
 /// τ by Sokal's automatic window, from autocovariances about the mean of all chains and averaged
 /// over these: walkers at different places lengthen it, as they should. Chains must have equal
 /// lengths. 1 for constant chains; unresolved after a request to stop.
-#[must_use]
 pub fn autocorrelation_time(chains: &[Vec<f64>]) -> Autocorrelation {
     let length = chains.iter().map(Vec::len).min().unwrap_or(0);
     let count = (length * chains.len()) as f64;
@@ -106,7 +105,6 @@ pub struct Unconverged {
 
 impl Unconverged {
     /// Steps after which all requirements should be met.
-    #[must_use]
     pub fn more_steps(&self) -> u64 {
         self.shortfalls.iter().map(|s| s.more_steps).max().unwrap_or(0)
     }
@@ -130,7 +128,7 @@ impl Chain {
     ///
     /// # Errors
     /// A chain that was damaged on disk.
-    pub fn diagnose(&self) -> Result<Vec<Diagnosis>, InferError> {
+    pub(crate) fn diagnose(&self) -> Result<Vec<Diagnosis>, InferError> {
         self.check()?;
         let diagnosis = |parameter: usize| {
             let chains = self.after_burn_in(parameter);
@@ -295,7 +293,6 @@ fn test_times(steps: u64) -> (bool, u64) {
 /// R̂ of chains cut in halves: √(1 − 1/n + B/W), with W the mean variance within a half and B the
 /// variance of their means [GelmanRubin1992]. Walkers n steps long and correlated over τ have about
 /// √(1 + τ/n) of chance alone. NaN if halves have less than two samples; 1 for constant chains.
-#[must_use]
 pub fn split_r_hat(chains: &[Vec<f64>]) -> f64 {
     let halves = chains.iter().flat_map(|chain| {
         let half = chain.len() / 2;
@@ -342,7 +339,6 @@ pub struct Posterior {
 impl Posterior {
     /// The value below which a share of a parameter's samples lies, interpolated linearly; NaN for
     /// a parameter that does not exist.
-    #[must_use]
     pub fn quantile(&self, parameter: usize, share: f64) -> f64 {
         let Some(sorted) = self.ascending.get(parameter) else {
             return f64::NAN;
@@ -357,20 +353,17 @@ impl Posterior {
     }
 
     /// The interval that holds a share and leaves equal shares on both sides.
-    #[must_use]
     pub fn interval(&self, parameter: usize, share: f64) -> [f64; 2] {
         let outside = 0.5 * (1.0 - share);
         [outside, 1.0 - outside].map(|share| self.quantile(parameter, share))
     }
 
     /// Standard deviation of a parameter.
-    #[must_use]
     pub fn sd(&self, parameter: usize) -> f64 {
         self.covariance[parameter][parameter].sqrt()
     }
 
     /// Standard error of a mean from a finite chain: σ/√(effective samples).
-    #[must_use]
     pub fn mean_error(&self, parameter: usize) -> f64 {
         self.sd(parameter) / self.diagnoses[parameter].effective.sqrt()
     }

@@ -73,7 +73,6 @@ impl Files {
     }
 
     /// The folder.
-    #[must_use]
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -303,7 +302,6 @@ fn too_long(what: &str, most: u64) -> io::Error {
 
 /// A text in which control characters but line ends and tabs are written as `\u001b`: those of a
 /// file's name or a title could steer a terminal.
-#[must_use]
 pub fn without_controls(text: &str) -> Cow<'_, str> {
     let plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n' | b'\t');
     if text.as_bytes().iter().all(plain) {
@@ -326,7 +324,6 @@ pub fn without_controls(text: &str) -> Cow<'_, str> {
 
 /// The words of a table's cell that no spreadsheet takes for a formula: those that begin as one,
 /// and are no number, stand after an apostrophe.
-#[must_use]
 pub fn no_formula(words: &str) -> Cow<'_, str> {
     let formula = words.starts_with(['=', '+', '-', '@', '\t', '\r']);
     match formula && words.parse::<f64>().is_err() {

@@ -51,7 +51,6 @@ pub struct Records {
 /// Reads the records of a file: HDF5, text, NPY, NPZ, WAV or TDMS, by its content.
 ///
 /// A file that cannot be read at all gives one error and nothing else.
-#[must_use]
 pub fn read(file: &Path, options: &ReadOptions) -> Records {
     let opened = format_of(file).and_then(|open| open(file, options));
     let records = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));

@@ -57,7 +57,6 @@ impl Record {
     }
 
     /// The part from sample `start`, at most `count` long.
-    #[must_use]
     pub fn part(&self, start: usize, count: usize) -> Self {
         let end = start.saturating_add(count);
         let channels = self.channels.iter().map(|channel| {
@@ -108,13 +107,11 @@ impl Record {
     }
 
     /// Number of samples of a channel.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.channels.first().map_or(0, |one| one.volts.len())
     }
 
     /// Whether there are no samples.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

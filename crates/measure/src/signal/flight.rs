@@ -127,7 +127,6 @@ pub struct Flight {
 impl Flight {
     /// Correlation of the errors of both times of flight; `None` without a reflected pulse, or where
     /// an error is 0.
-    #[must_use]
     pub fn correlation(&self) -> Option<f64> {
         let product = self.incident_s.sigma * self.reflected_s?.sigma;
         (product > 0.0).then(|| self.covariance_s2 / product)
@@ -162,7 +161,6 @@ impl Flight {
 
     /// The same with the relative standard error of the sampling interval added to both times: all
     /// of one recording share it.
-    #[must_use]
     pub fn with_interval_error(mut self, relative: f64) -> Self {
         self.interval_error = relative;
         self.incident_s.widen(relative);
@@ -175,7 +173,6 @@ impl Flight {
 
     /// Systematic errors of the two pulses of the incident and of the reflected time. The
     /// interval's error counts with the pulse that no other time has.
-    #[must_use]
     pub fn systematic(&self) -> [[Systematic; 2]; 2] {
         let wall = self.picks.wall.systematic;
         let back = self.picks.reflected.map(|back| back.systematic);
@@ -191,7 +188,6 @@ impl Flight {
 
     /// The same where more than this shot determines how much lower a pulse's competing maximum is:
     /// below 0 that one is the pulse.
-    #[must_use]
     pub fn with_height_difference(&self, kind: PulseKind, lower: Estimate) -> Self {
         let mut picks = self.picks;
         let (Some(pulse), Some(other)) = (picks.pulse(kind), picks.competing[kind as usize]) else {
@@ -219,7 +215,6 @@ impl Picks {
     }
 
     /// Times of flight and height ratios from the three pulses.
-    #[must_use]
     pub fn flight(self) -> Flight {
         let height = |picked: Picked| Estimate { value: picked.height, sigma: picked.height_sigma };
         // The error of having taken another maximum for the largest: as far as that lies off, with
@@ -253,7 +248,6 @@ impl Picks {
 /// Systematic error of the mean of times between two pulses, from those of the pulses, a pair a
 /// shot: noise among what lies under them, which has signs, averages out, what stands there in
 /// every shot and what is open of the shapes does not. 0 without shots.
-#[must_use]
 pub fn mean_systematic(pairs: &[[Systematic; 2]]) -> f64 {
     let count = pairs.len().max(1) as f64;
     let mean = |of: &dyn Fn(&[Systematic; 2]) -> f64| pairs.iter().map(of).sum::<f64>() / count;
@@ -264,7 +258,6 @@ pub fn mean_systematic(pairs: &[[Systematic; 2]]) -> f64 {
 }
 
 /// A shot's error without the systematic errors of its two pulses.
-#[must_use]
 pub fn without_systematic(sigma: f64, pair: [Systematic; 2]) -> f64 {
     let of = |one: Systematic| one.superposition_s.powi(2) + one.shape_s.powi(2);
     let squared = sigma.powi(2) - of(pair[0]) - of(pair[1]);

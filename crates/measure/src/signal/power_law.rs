@@ -33,13 +33,11 @@ const UNLIKELY: f64 = 0.01;
 
 impl PowerLaw {
     /// The law's value.
-    #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         self.prefactor * x.powf(self.exponent)
     }
 
     /// Largest |y / law − 1| over the fitted points.
-    #[must_use]
     pub fn largest_deviation(&self) -> f64 {
         let relative = self.residuals.iter().map(|r| r.exp_m1().abs());
         relative.fold(0.0, f64::max)
@@ -47,14 +45,12 @@ impl PowerLaw {
 
     /// Whether the points follow the law within their errors: p ≥ 0.01. `None` if their errors are
     /// unknown.
-    #[must_use]
     pub fn is_supported(&self) -> Option<bool> {
         self.chi_square.map(|c| c.probability >= UNLIKELY)
     }
 
     /// Factor that makes the errors as large as the points' scatter about the law,
     /// √(χ²/degrees of freedom); 1 if they are large enough, or chi-square is unknown.
-    #[must_use]
     pub fn excess(&self) -> f64 {
         let reduced = self.chi_square.map(|c| c.value / c.freedom as f64);
         reduced.map_or(1.0, |reduced| reduced.sqrt().max(1.0))

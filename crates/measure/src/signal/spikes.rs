@@ -30,7 +30,6 @@ const ROUNDING: f64 = 0.3;
 /// polynomial is fitted to the neighbours alone, without such as stand out themselves; a
 /// sample is a spike if it is off by 6.5 standard errors, of the noise or, where that is more, of
 /// what the polynomial leaves of the neighbours. So neither noise nor the top of a narrow pulse is one.
-#[must_use]
 pub fn without_spikes(samples: &[f64]) -> (Cow<'_, [f64]>, Vec<usize>) {
     let Some((noise, candidates)) = screened(samples) else {
         return (Cow::Borrowed(samples), Vec::new());

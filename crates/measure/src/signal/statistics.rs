@@ -16,7 +16,6 @@ impl Estimate {
     }
 
     /// Quotient of two independent numbers, errors to first order.
-    #[must_use]
     pub fn over(self, other: Self) -> Self {
         let value = self.value / other.value;
         let sigma = (self.sigma / other.value).hypot(value * other.sigma / other.value);
@@ -28,7 +27,6 @@ impl Estimate {
 pub(crate) const NORMAL_MAD: f64 = 1.482_602_218_505_602;
 
 /// Median by partial sorting; the lower middle one of an even number. `None` without values.
-#[must_use]
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut values = values.to_vec();
     let middle = values.len().checked_sub(1)? / 2;
@@ -64,7 +62,6 @@ pub struct Summary {
 ///
 /// The plain mean and its error describe what varies from shot to shot, the weighted ones what the
 /// σ describe. Where chi-square is far above count − 1, the plain ones are the right ones.
-#[must_use]
 pub fn summary(measured: &[Estimate]) -> Option<Summary> {
     let finite = measured.iter().filter(|m| m.value.is_finite());
     let finite: Vec<Estimate> = finite.copied().collect();
@@ -113,7 +110,6 @@ pub struct ChiSquare {
 ///
 /// `None` if the numbers of points differ, a number is not finite or a σ not positive, or no degree
 /// of freedom is left.
-#[must_use]
 pub fn chi_square(measured: &[Estimate], expected: &[f64], fit_result: usize) -> Option<ChiSquare> {
     let freedom = measured.len().checked_sub(fit_result)?;
     if measured.len() != expected.len() || !measured.iter().all(|m| m.sigma > 0.0) {
@@ -127,7 +123,6 @@ pub fn chi_square(measured: &[Estimate], expected: &[f64], fit_result: usize) ->
 impl ChiSquare {
     /// A sum of squares of normal deviates with its probability; `None` if it is not finite or no
     /// degree of freedom is left.
-    #[must_use]
     pub fn of(value: f64, freedom: usize) -> Option<Self> {
         (value.is_finite() && freedom > 0).then(|| Self {
             value,
@@ -195,7 +190,6 @@ pub struct Coverage {
 /// Coverage of intervals ± `factor` σ, from pulls (measured − true)/σ.
 ///
 /// A pull that is not a number counts as outside. `None` without pulls.
-#[must_use]
 pub fn coverage(pulls: &[f64], factor: f64) -> Option<Coverage> {
     let count = pulls.len();
     let inside = pulls.iter().filter(|pull| pull.abs() <= factor).count();
@@ -217,7 +211,6 @@ pub fn coverage(pulls: &[f64], factor: f64) -> Option<Coverage> {
 /// Speeds that are each near their neighbour make one group, however long: group by programmed
 /// speeds if measured ones run into each other. Groups, and the shots' numbers in each, are in
 /// order of speed. Speeds that are not finite belong to none.
-#[must_use]
 pub fn groups(speeds: &[f64], gap: f64) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> = (0..speeds.len()).collect();
     order.retain(|shot| speeds[*shot].is_finite());
@@ -251,7 +244,6 @@ pub struct Ratio {
 /// (σ_r/r)² = (σ_u/u)² + (σ_l/l)² + exponent² ((σ_v,u/v_u)² + (σ_v,l/v_l)²).
 /// Give 0 if speeds' errors are already in the values'. Each upper point is divided by the nearest
 /// lower one.
-#[must_use]
 pub fn ratios_at_common(upper: &[Point], lower: &[Point], gap: f64, exponent: f64) -> Vec<Ratio> {
     let ratio = |u: &Point| {
         let apart = |l: &Point| (l.speed.value - u.speed.value).abs();

@@ -2,11 +2,11 @@
 //! printed constants.
 
 use super::predicates;
-use super::{Evidence, Finding, Verdict};
-use serde::Deserialize;
+use super::{ClaimFinding, Evidence, Verdict};
+use serde::{Deserialize, Serialize};
 
 /// On which side of the threshold the deciding number must lie.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum Needs {
     /// The number exceeds the threshold.
@@ -18,7 +18,7 @@ pub enum Needs {
 }
 
 /// One statement of the paper that a model can be held to.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Claim {
     /// Short name, unique.
@@ -52,12 +52,13 @@ pub struct Claim {
     #[serde(default)]
     pub unit: String,
     /// Only speeds from here in m/s.
-    #[serde(default)]
+    #[serde(default, skip_serializing)]
     pub from_m_s: f64,
     /// Only speeds up to here in m/s.
-    #[serde(default = "no_limit")]
+    #[serde(default = "no_limit", skip_serializing)]
     pub to_m_s: f64,
     /// The deciding number, in words.
+    #[serde(rename(serialize = "value_is"))]
     pub value: String,
     /// Why this threshold.
     pub reason: String,
@@ -87,7 +88,7 @@ pub enum ClaimError {
 }
 
 /// Decides a claim on numbers.
-pub type Predicate<E> = fn(&Claim, &E) -> Finding;
+pub type Predicate<E> = fn(&Claim, &E) -> ClaimFinding;
 
 /// A claim and the code that decides it on numbers of a kind: those of single
 /// shots, if nothing else is said.
@@ -100,8 +101,7 @@ pub struct Evaluator<E = Evidence> {
 
 impl<E> Evaluator<E> {
     /// Decides the claim on numbers.
-    #[must_use]
-    pub fn decide(&self, evidence: &E) -> Finding {
+    pub fn decide(&self, evidence: &E) -> ClaimFinding {
         (self.predicate)(&self.claim, evidence)
     }
 }
@@ -109,7 +109,6 @@ impl<E> Evaluator<E> {
 impl Evaluator {
     /// Whether the claim is about what a shot of a case leaves behind when the
     /// pulses have passed: the striker or the gaps.
-    #[must_use]
     pub fn needs_end(&self, case: &str, speed_m_s: f64) -> bool {
         predicates::OF_THE_END.contains(&self.claim.predicate.as_str())
             && self.covers(case, speed_m_s)
@@ -185,7 +184,7 @@ pub struct Rounded {
 
 impl Rounded {
     /// From the draws' findings.
-    fn of(findings: &[Finding]) -> Self {
+    fn of(findings: &[ClaimFinding]) -> Self {
         let count = |verdict| findings.iter().filter(|f| f.leaning == verdict).count();
         let values = findings.iter().map(|f| f.value).filter(|v| v.is_finite());
         let range = values.clone().fold(None, |range: Option<(f64, f64)>, v| {
@@ -216,7 +215,7 @@ pub struct EvaluatedClaim {
     /// The verdict, rounding considered.
     pub verdict: Verdict,
     /// What the constants as printed give.
-    pub finding: Finding,
+    pub finding: ClaimFinding,
     /// What rounding does, if it was looked at.
     pub rounded: Option<Rounded>,
 }
@@ -231,7 +230,6 @@ impl EvaluatedClaim {
 }
 
 /// Decides all claims on the constants as printed.
-#[must_use]
 pub fn evaluate_all<E>(evaluators: &[Evaluator<E>], printed: &E) -> Vec<EvaluatedClaim> {
     evaluate_all_rounded(evaluators, printed, &[])
 }
@@ -239,7 +237,6 @@ pub fn evaluate_all<E>(evaluators: &[Evaluator<E>], printed: &E) -> Vec<Evaluate
 /// Decides all claims on the constants as printed, and looks what draws within
 /// their rounding do: a claim of which one draw lies on another side than the
 /// printed constants is not decidable.
-#[must_use]
 pub fn evaluate_all_rounded<E>(
     evaluators: &[Evaluator<E>],
     printed: &E,
@@ -251,7 +248,7 @@ pub fn evaluate_all_rounded<E>(
 
 fn decide<E>(evaluator: &Evaluator<E>, printed: &E, draws: &[E]) -> EvaluatedClaim {
     let finding = evaluator.decide(printed);
-    let drawn: Vec<Finding> = draws.iter().map(|draw| evaluator.decide(draw)).collect();
+    let drawn: Vec<ClaimFinding> = draws.iter().map(|draw| evaluator.decide(draw)).collect();
     let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
     let mut evaluated = EvaluatedClaim {
         claim: evaluator.claim.clone(),

@@ -23,7 +23,6 @@ impl Branch {
     pub const BOTH: [Self; 2] = [Self::Incident, Self::Reflected];
 
     /// As written in tables.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Incident => "incident",
@@ -34,7 +33,7 @@ impl Branch {
 
 /// What one shot showed. Numbers that the shot did not give are not a number.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct ShotPoint {
     /// Speed of the striker in m/s.
     pub speed_m_s: f64,
     /// Incident ToF in s.
@@ -79,9 +78,8 @@ pub struct Point {
     pub loosened_accuracy_m: f64,
 }
 
-impl Point {
+impl ShotPoint {
     /// The ToF of a branch in s.
-    #[must_use]
     pub fn tof_s(&self, branch: Branch) -> f64 {
         match branch {
             Branch::Incident => self.tof_incident_s,
@@ -101,26 +99,23 @@ pub struct Curve {
     /// Name of the case: `dry`, `motor`, ...
     pub case: String,
     /// Its shots in order of speed.
-    pub points: Vec<Point>,
+    pub points: Vec<ShotPoint>,
 }
 
 impl Curve {
     /// All speeds in m/s.
-    #[must_use]
     pub fn speeds_m_s(&self) -> Vec<f64> {
         self.points.iter().map(|p| p.speed_m_s).collect()
     }
 
     /// All ToFs of a branch in s.
-    #[must_use]
     pub fn tofs_s(&self, branch: Branch) -> Vec<f64> {
         self.points.iter().map(|p| p.tof_s(branch)).collect()
     }
 
     /// The shot at a speed.
-    #[must_use]
-    pub fn at(&self, speed_m_s: f64) -> Option<&Point> {
-        let near = |p: &&Point| (p.speed_m_s - speed_m_s).abs() < 1e-9 * speed_m_s;
+    pub fn at(&self, speed_m_s: f64) -> Option<&ShotPoint> {
+        let near = |p: &&ShotPoint| (p.speed_m_s - speed_m_s).abs() < 1e-9 * speed_m_s;
         self.points.iter().find(near)
     }
 
@@ -128,7 +123,7 @@ impl Curve {
     /// where the curve is nearly straight; and its absolute accuracy: that of
     /// the two ToFs over the distance of their speeds in ln v.
     fn exponents(&self, branch: Branch) -> Vec<(f64, f64)> {
-        let exponent = |a: &Point, b: &Point| {
+        let exponent = |a: &ShotPoint, b: &ShotPoint| {
             let span = (b.speed_m_s / a.speed_m_s).ln();
             let rise = (b.tof_s(branch) / a.tof_s(branch)).ln();
             (rise / span, (a.accuracy_reached + b.accuracy_reached) / span)
@@ -207,7 +202,7 @@ impl TofRatio {
 
 /// One liquid as printed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Oil {
+pub struct PrintedOil {
     /// Name of its case.
     pub case: String,
     /// Kinematic viscosity in m²/s.
@@ -216,9 +211,8 @@ pub struct Oil {
     pub density_kg_m3: f64,
 }
 
-impl Oil {
+impl PrintedOil {
     /// Dynamic viscosity in Pa s.
-    #[must_use]
     pub fn dynamic_viscosity_pa_s(&self) -> f64 {
         self.kinematic_viscosity_m2_s * self.density_kg_m3
     }
@@ -226,7 +220,7 @@ impl Oil {
 
 /// What a published figure shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Measured {
+pub enum MeasuredKind {
     /// Peak force at the sensor bead over that at the wall.
     SensorOverWall,
     /// A time of flight in s.
@@ -239,7 +233,7 @@ pub enum Measured {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Digitised {
     /// What was measured.
-    pub what: Measured,
+    pub what: MeasuredKind,
     /// Case it belongs to.
     pub case: String,
     /// Speed in m/s.
@@ -256,7 +250,7 @@ pub struct Evidence {
     /// One curve a case.
     pub curves: Vec<Curve>,
     /// The liquids.
-    pub oils: Vec<Oil>,
+    pub oils: Vec<PrintedOil>,
     /// Viscosity over Young modulus of the dry balls, η/Y in s.
     pub viscosity_over_modulus_s: f64,
     /// Measured points; the paper prints none.
@@ -265,24 +259,21 @@ pub struct Evidence {
 
 impl Evidence {
     /// The curve of a case.
-    #[must_use]
     pub fn curve(&self, case: &str) -> Option<&Curve> {
         self.curves.iter().find(|curve| curve.case == case)
     }
 
     /// The liquid of a case.
-    #[must_use]
-    pub fn oil(&self, case: &str) -> Option<&Oil> {
+    pub fn oil(&self, case: &str) -> Option<&PrintedOil> {
         self.oils.iter().find(|oil| oil.case == case)
     }
 
     /// Wet over dry ToFs at the speeds that both curves have.
-    #[must_use]
     pub fn ratios(&self, case: &str) -> Vec<TofRatio> {
         let (Some(wet), Some(dry)) = (self.curve(case), self.curve("dry")) else {
             return Vec::new();
         };
-        let ratio = |w: &Point| {
+        let ratio = |w: &ShotPoint| {
             let d = dry.at(w.speed_m_s)?;
             Some(TofRatio {
                 speed_m_s: w.speed_m_s,

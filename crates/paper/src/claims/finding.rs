@@ -1,50 +1,6 @@
 //! The answer to a claim: a verdict and the number behind it.
 
-/// The answer to "does the model show what the paper says?".
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Verdict {
-    /// It does.
-    Holds,
-    /// It does in at least half of the comparisons that the claim covers, or
-    /// meets the claim's weaker threshold.
-    InPart,
-    /// It does not, or in fewer.
-    Fails,
-    /// The numbers do not decide.
-    NotDecidable,
-}
-
-impl Verdict {
-    /// All verdicts.
-    pub const ALL: [Self; 4] = [Self::Holds, Self::InPart, Self::Fails, Self::NotDecidable];
-
-    /// As written in tables.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::InPart => "holds in part",
-            Self::Fails => "fails",
-            Self::NotDecidable => "not decidable",
-        }
-    }
-
-    /// Share of the claim that is met, for ranking readings: 1, 1/2 or 0.
-    #[must_use]
-    pub const fn score(self) -> f64 {
-        match self {
-            Self::Holds => 1.0,
-            Self::InPart => 0.5,
-            Self::Fails | Self::NotDecidable => 0.0,
-        }
-    }
-}
-
-impl std::fmt::Display for Verdict {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name())
-    }
-}
+pub use hertzchain_figures::Verdict;
 
 /// Share of its comparisons that a claim must meet to hold in part: what more
 /// often fails than holds is not partly true.
@@ -52,7 +8,7 @@ pub(crate) const IN_PART: f64 = 0.5;
 
 /// A predicate's answer: a number with its accuracy, and what follows from it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct ClaimFinding {
     /// What follows.
     pub verdict: Verdict,
     /// What would follow if the numbers were exact: on which side they lie, be it
@@ -80,9 +36,8 @@ pub struct Distance {
     pub accuracy: f64,
 }
 
-impl Finding {
+impl ClaimFinding {
     /// By how much the number differs from what the paper has.
-    #[must_use]
     pub fn deviation(&self) -> Option<f64> {
         self.expected.map(|expected| self.value - expected)
     }
@@ -122,7 +77,6 @@ impl Finding {
     }
 
     /// Whether more accurate numbers could say more.
-    #[must_use]
     pub fn is_open(&self) -> bool {
         self.verdict != self.leaning
     }
@@ -228,13 +182,13 @@ impl Comparisons {
     }
 
     /// The finding with the number whose margin is smallest.
-    pub(crate) fn finding(self) -> Finding {
+    pub(crate) fn finding(self) -> ClaimFinding {
         let (met, all) = (self.seen.yes, self.seen.all());
         let mut detail = format!("{met} of {all} comparisons met");
         if !self.place.is_empty() {
             detail += &format!("; nearest or worst: {}", self.place);
         }
-        Finding {
+        ClaimFinding {
             verdict: self.seen.verdict(),
             leaning: self.leaning.verdict(),
             value: self.value,

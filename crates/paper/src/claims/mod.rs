@@ -15,10 +15,10 @@ pub use claim::{
     Claim, ClaimError, EvaluatedClaim, Evaluator, Needs, Rounded, claims, evaluate_all,
     evaluate_all_rounded, read,
 };
-pub use evidence::{Branch, Curve, Digitised, Evidence, Measured, Oil, Point};
+pub use evidence::{Branch, Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint};
 pub(crate) use evidence::{SHOTS_PER_POINT, SPEED_SCATTER_M_S};
+pub use finding::{ClaimFinding, Distance, Verdict};
 pub(crate) use finding::{Comparisons, IN_PART};
-pub use finding::{Distance, Finding, Verdict};
 pub use predicates::find as predicate;
 pub use report::{MEANING, claims_markdown, computed_text};
 pub(crate) use report::{claims_json, rounded_text, verdicts_text, with_unit};

@@ -1,6 +1,6 @@
 //! Claims with their verdicts, as JSON and Markdown.
 
-use super::{Claim, EvaluatedClaim, Finding, IN_PART, Needs, Rounded, Verdict};
+use super::{Claim, ClaimFinding, EvaluatedClaim, IN_PART, Needs, Rounded, Verdict};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -16,35 +16,24 @@ pub(crate) fn claims_json(evaluated: &[EvaluatedClaim]) -> Value {
 }
 
 fn row(evaluated: &EvaluatedClaim) -> Value {
-    let claim = &evaluated.claim;
-    let mut row = json!({
-        "id": claim.id,
-        "statement": claim.statement,
-        "paper": claim.paper,
-        "predicate": claim.predicate,
-        "cases": claim.cases,
-        "branches": claim.branches,
-        "expected": claim.expected,
-        "unit": claim.unit,
-        "needs": needs_name(claim.needs),
-        "threshold": claim.threshold,
-        "partly": claim.partly,
-        "at_most": claim.at_most,
-        "reason": claim.reason,
-        "value_is": claim.value,
-        "value": number(evaluated.finding.value),
-        "value_accuracy": number(evaluated.finding.accuracy),
-        "value_expected": evaluated.finding.expected,
-        "deviation": evaluated.finding.deviation().map_or(Value::Null, number),
-        "detail": evaluated.finding.detail,
-        "nearest_change": evaluated.finding.nearest_change.map(|nearest| json!({
+    let finding = &evaluated.finding;
+    let found = json!({
+        "value": number(finding.value),
+        "value_accuracy": number(finding.accuracy),
+        "value_expected": finding.expected,
+        "deviation": finding.deviation().map_or(Value::Null, number),
+        "detail": finding.detail,
+        "nearest_change": finding.nearest_change.map(|nearest| json!({
             "margin": number(nearest.margin),
             "accuracy": number(nearest.accuracy),
         })),
-        "verdict_as_printed": evaluated.finding.verdict.name(),
+        "verdict_as_printed": finding.verdict.name(),
         "verdict": evaluated.verdict.name(),
     });
-    if let (Some(rounded), Some(row)) = (&evaluated.rounded, row.as_object_mut()) {
+    let claim = serde_json::to_value(&evaluated.claim).unwrap_or_default();
+    let both = [claim, found].into_iter().filter_map(|part| part.as_object().cloned());
+    let mut row: Map<String, Value> = both.flatten().collect();
+    if let Some(rounded) = &evaluated.rounded {
         let counts = Verdict::ALL.iter().zip(rounded.verdicts);
         let counts: Map<String, Value> =
             counts.map(|(verdict, count)| (verdict.name().to_owned(), json!(count))).collect();
@@ -57,27 +46,15 @@ fn row(evaluated: &EvaluatedClaim) -> Value {
         });
         row.insert("rounding".to_owned(), rounding);
     }
-    row
+    Value::Object(row)
 }
 
-const fn needs_name(needs: Needs) -> &'static str {
-    match needs {
-        Needs::Above => "above",
-        Needs::Below => "below",
-        Needs::Within => "within",
-    }
-}
-
+/// A number of JSON, which has no NaN.
 fn number(value: f64) -> Value {
-    // JSON has no NaN.
-    match value.is_finite() {
-        true => json!(value),
-        false => Value::Null,
-    }
+    serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number)
 }
 
 /// The same as a page for people, below a head of its own.
-#[must_use]
 pub fn claims_markdown(evaluated: &[EvaluatedClaim], head: &str) -> String {
     let mut page = format!("{head}\n\n{}\n\n", verdicts_text());
     let drawn = evaluated.iter().any(|evaluated| evaluated.rounded.is_some());
@@ -179,7 +156,6 @@ fn rounding(page: &mut String, evaluated: &EvaluatedClaim, rounded: &Rounded) {
 }
 
 /// What was computed, with its accuracy and unit.
-#[must_use]
 pub fn computed_text(evaluated: &EvaluatedClaim) -> String {
     let value = value_text(evaluated.finding.value, accuracy_shown(&evaluated.finding));
     of_unit(value, &evaluated.claim)
@@ -228,7 +204,7 @@ fn of_unit(number: String, claim: &Claim) -> String {
 const ROUNDED: f64 = 1e-13;
 
 /// The accuracy of a finding, `None` where it is rounding of the arithmetic.
-fn accuracy_shown(finding: &Finding) -> Option<f64> {
+fn accuracy_shown(finding: &ClaimFinding) -> Option<f64> {
     let accuracy = finding.accuracy;
     (accuracy.is_finite() && accuracy > ROUNDED * finding.value.abs()).then_some(accuracy)
 }

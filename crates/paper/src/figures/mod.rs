@@ -33,7 +33,6 @@ pub fn figures(of: &Reproduction) -> Result<Vec<(&'static str, Figure)>, Reprodu
 }
 
 /// Titles and captions of figures as Markdown.
-#[must_use]
 pub fn captions(figures: &[(&str, Figure)]) -> String {
     figures.iter().fold(String::from("# Captions\n"), |text, (name, figure)| {
         text + &format!("\n## {name}\n{}\n", figure.caption_text())
@@ -106,31 +105,32 @@ fn signal_panel(signal: &SignalShot, legend: bool) -> Chart {
     chart.legend(if legend { Legend::Auto } else { Legend::Off })
 }
 
-/// Incident and reflected ToF with the log–log inset.
+/// Incident and reflected ToF, with even and with logarithmic axes.
 fn times(evidence: &Evidence) -> Figure {
     let speed = "Striker speed $v_0$ (m/s)";
-    let inset = Chart::new("$v_0$ (m/s)", "ToF (µs)").x_log().y_log();
-    let inset = curves(evidence, inset);
-    let chart = curves(evidence, Chart::new(speed, "Time of flight (µs)"));
+    let empty = Chart::new(speed, "Time of flight (µs)");
+    let log = curves(evidence, empty.clone().x_log().y_log()).legend(Legend::Off);
+    let chart = curves(evidence, empty);
     let chart = chart
         .with(line(DASHED, &[], &[], Colour::BLACK))
-        .note(&format!("error bars: $v_0$ ± {SPEED_SCATTER_M_S} m/s"))
-        .inset(inset);
-    Figure::single_column(78.0)
+        .note(&format!("error bars: $v_0$ ± {SPEED_SCATTER_M_S} m/s"));
+    Figure::single_column(130.0)
+        .letters()
         .panel(chart)
+        .panel(log)
         .title("Time of flight in the dry chain against the striker's speed")
         .caption(&times_caption())
 }
 
 fn times_caption() -> String {
     format!(
-        "Times of flight of the dry chain between bead 7 and the wall (incident, filled circles) \
+        "(a) Times of flight of the dry chain between bead 7 and the wall (incident, filled circles) \
          and back (reflected, open squares) against the striker's speed, computed with the full \
          dry law (symbols, full lines) and without its cubic term ({DASHED}, dashed lines in the \
          same colours). Error bars: what the paper's scatter of ±{SPEED_SCATTER_M_S} m/s in the \
          striker's speed (standard deviation over {SHOTS_PER_POINT} shots) does to the time of \
          flight of one shot, |dT/dv| times the scatter; where none is seen it is smaller than \
-         the symbol. Inset: the same with logarithmic axes."
+         the symbol. (b) The same with logarithmic axes."
     )
 }
 

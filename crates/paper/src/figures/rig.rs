@@ -2,9 +2,9 @@
 //! what the file's `[rig]` describes.
 
 use crate::reproduce::{Cases, ReproduceError};
-use hertzchain_chain::{Bead, Chain, FarEnd as ChainEnd, Push, Start};
+use hertzchain_chain::{Bead, Chain, FarEnd, Push, Start};
 use hertzchain_experiment::{Experiment, RigPart, RigPartKind, Units};
-use hertzchain_figures::{FarEnd, Figure, RigDrawing};
+use hertzchain_figures::{Figure, RigDrawing, RigEnd};
 
 /// The paper's Fig. 1: the wet rig with all that stands around the chain.
 pub(super) fn figure(cases: &Cases) -> Result<Figure, ReproduceError> {
@@ -182,16 +182,16 @@ fn springs(experiment: &Experiment, push: &Push) -> String {
     }
 }
 
-fn far_end(far: &ChainEnd) -> FarEnd {
+fn far_end(far: &FarEnd) -> RigEnd {
     match far {
-        ChainEnd::HalfBead { .. } | ChainEnd::Stop { .. } => FarEnd::HalfBead,
-        ChainEnd::Plane { .. } | ChainEnd::PlaneStop { .. } => FarEnd::Plane,
-        ChainEnd::Periodic { .. } | ChainEnd::Free => FarEnd::Open,
+        FarEnd::HalfBead { .. } | FarEnd::Stop { .. } => RigEnd::HalfBead,
+        FarEnd::Plane { .. } | FarEnd::PlaneStop { .. } => RigEnd::Plane,
+        FarEnd::Periodic { .. } | FarEnd::Free => RigEnd::Open,
     }
 }
 
 /// The stop of the model, or the structure of the rig.
-fn end_structure(experiment: &Experiment, far: &ChainEnd) -> String {
+fn end_structure(experiment: &Experiment, far: &FarEnd) -> String {
     let described = part(experiment, RigPartKind::EndStructure);
     let name = described.map_or("stop", |part| &part.name);
     match (stop_mass(far), described) {
@@ -204,9 +204,9 @@ fn end_structure(experiment: &Experiment, far: &ChainEnd) -> String {
     }
 }
 
-fn stop_mass(far: &ChainEnd) -> Option<f64> {
+fn stop_mass(far: &FarEnd) -> Option<f64> {
     match far {
-        ChainEnd::Stop { mass_kg, .. } | ChainEnd::PlaneStop { mass_kg, .. } => Some(*mass_kg),
+        FarEnd::Stop { mass_kg, .. } | FarEnd::PlaneStop { mass_kg, .. } => Some(*mass_kg),
         _ => None,
     }
 }

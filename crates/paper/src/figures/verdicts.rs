@@ -1,18 +1,19 @@
 //! Figures of verdicts: which claims hold in which reading and on which rig, and what the rigs show.
 
-use crate::claims::{Branch, EvaluatedClaim, Verdict as Found};
-use crate::readings::{FLIPPED, Row, Scan};
+use crate::claims::{Branch, EvaluatedClaim, Verdict};
+use crate::readings::{FLIPPED, ReadingRow, ReadingScan};
 use crate::rig_claims::{
-    AtSpeed, Evidence, FACTORS, Observed, Rig, RigClaims, mean, rebound_m_s, spread_s, typical,
+    FACTORS, Observed, RigClaims, RigEvidence, SpeedSeries, TriedRig, mean, rebound_m_s, spread_s,
+    typical,
 };
-use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, Verdict, VerdictMatrix};
+use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, VerdictMatrix};
 
 /// Claims against readings: the default, one switch at a time, the closest.
 ///
 /// What never moves needs no cells: claims with one verdict in all readings
 /// are listed by it, and so are switches that move no verdict. Claims that
 /// rounding flips are marked: a verdict is that of the constants as printed.
-pub(super) fn readings(scan: &Scan) -> Figure {
+pub(super) fn readings(scan: &ReadingScan) -> Figure {
     let columns = columns(scan);
     let moved: Vec<&ReadingColumn> = columns.iter().filter(|c| c.is_shown(scan)).collect();
     let names: Vec<&str> = moved.iter().map(|column| column.name.as_str()).collect();
@@ -30,7 +31,7 @@ pub(super) fn readings(scan: &Scan) -> Figure {
             _ => matrix = matrix.row(&name, &verdicts),
         }
     }
-    for (verdict, claims) in LISTED.into_iter().zip(&fixed) {
+    for (verdict, claims) in Verdict::ALL.into_iter().zip(&fixed) {
         if !claims.is_empty() {
             matrix = matrix.throughout(verdict, &format!("in all: {}", claims.join(", ")));
         }
@@ -53,7 +54,7 @@ pub(super) fn readings(scan: &Scan) -> Figure {
 const ROUNDING: &str = "Not decidable in the default reading: there rounding of the printed constants \
     alone flips the verdict that they give as printed, which is shown.";
 
-fn readings_caption(scan: &Scan) -> String {
+fn readings_caption(scan: &ReadingScan) -> String {
     let mut caption = String::from(
         "Which claims of the paper hold in which reading of its model: the default, one switch \
          changed at a time, and the reading that comes closest to the paper. Claims with the same \
@@ -66,19 +67,16 @@ fn readings_caption(scan: &Scan) -> String {
 }
 
 /// A claim's name in words, marked if rounding flips it.
-fn name(scan: &Scan, claim: usize, id: &str) -> String {
+fn name(scan: &ReadingScan, claim: usize, id: &str) -> String {
     match scan.flipped_by_rounding.contains(&claim) {
         true => words(id) + FLIPPED,
         false => words(id),
     }
 }
 
-/// Verdicts in the order of the lists below the table.
-const LISTED: [Verdict; 4] =
-    [Verdict::Holds, Verdict::InPart, Verdict::Fails, Verdict::NotDecidable];
-
+/// Place of a verdict in the lists below the table.
 fn place(verdict: Verdict) -> usize {
-    LISTED.iter().take_while(|listed| **listed != verdict).count()
+    Verdict::ALL.iter().take_while(|listed| **listed != verdict).count()
 }
 
 /// One reading, or options of one switch with the same verdicts.
@@ -86,21 +84,21 @@ struct ReadingColumn<'a> {
     name: String,
     /// The switch that is changed; empty for the default and the closest.
     switch: &'static str,
-    row: &'a Row,
+    row: &'a ReadingRow,
 }
 
 impl ReadingColumn<'_> {
     /// The default and the closest are always shown.
-    fn is_shown(&self, scan: &Scan) -> bool {
+    fn is_shown(&self, scan: &ReadingScan) -> bool {
         self.switch.is_empty() || self.row.verdicts != scan.default.verdicts
     }
 
     fn verdict(&self, claim: usize) -> Option<Verdict> {
-        self.row.verdicts.get(claim).copied().map(symbol)
+        self.row.verdicts.get(claim).copied()
     }
 }
 
-fn columns(scan: &Scan) -> Vec<ReadingColumn<'_>> {
+fn columns(scan: &ReadingScan) -> Vec<ReadingColumn<'_>> {
     let always = |name: &str, row| ReadingColumn { name: name.to_owned(), switch: "", row };
     let mut columns = vec![always("default", &scan.default)];
     for row in &scan.single {
@@ -128,18 +126,8 @@ fn words(id: &str) -> String {
     id.split('-').map(word).collect::<Vec<_>>().join(" ")
 }
 
-fn symbol(verdict: Found) -> Verdict {
-    match verdict {
-        Found::Holds => Verdict::Holds,
-        Found::InPart => Verdict::InPart,
-        Found::Fails => Verdict::Fails,
-        Found::NotDecidable => Verdict::NotDecidable,
-    }
-}
-
 /// All figures of the rig's claims by name.
-#[must_use]
-pub fn rig_figures(evidence: &Evidence, claims: &RigClaims) -> Vec<(&'static str, Figure)> {
+pub fn rig_figures(evidence: &RigEvidence, claims: &RigClaims) -> Vec<(&'static str, Figure)> {
     vec![
         ("rig_verdicts", verdicts(claims)),
         ("rig_spreads", spreads(evidence)),
@@ -153,8 +141,8 @@ fn verdicts(claims: &RigClaims) -> Figure {
     let names: Vec<&str> = claims.rigs.iter().map(|(rig, _)| &*rig.name).collect();
     let cell = |claim: usize| {
         let verdict = move |all: &[EvaluatedClaim]| all.get(claim).map(|own| own.verdict);
-        move |(_, all): &(Rig, Vec<EvaluatedClaim>)| {
-            verdict(all).map_or(Verdict::NotDecidable, symbol)
+        move |(_, all): &(TriedRig, Vec<EvaluatedClaim>)| {
+            verdict(all).unwrap_or(Verdict::NotDecidable)
         }
     };
     let rows = claims.evaluated.iter().enumerate();
@@ -167,7 +155,7 @@ fn verdicts(claims: &RigClaims) -> Figure {
 
 /// Spreads of times of flight against each factor, the others as usual; beside
 /// them what the striker's own irregularity adds.
-fn spreads(evidence: &Evidence) -> Figure {
+fn spreads(evidence: &RigEvidence) -> Figure {
     let kinds: [(&str, Colour, Marker, Of); 3] = [
         ("reflected, with taps", Colour::GREEN, Marker::OpenSquare, |at| {
             spread_s(&at.tapped, Branch::Reflected)
@@ -212,12 +200,12 @@ fn spreads(evidence: &Evidence) -> Figure {
 const SPREADS_NS: (f64, f64) = (50.0, 5e5);
 
 /// What a series has.
-type Of = fn(&AtSpeed) -> f64;
+type Of = fn(&SpeedSeries) -> f64;
 
 /// Rigs that differ from the usual one in a factor at most, by its value.
-fn one_at_a_time(evidence: &Evidence, factor: usize) -> Vec<(f64, &Observed)> {
-    let usual = Rig::usual();
-    let same = |rig: &Rig| {
+fn one_at_a_time(evidence: &RigEvidence, factor: usize) -> Vec<(f64, &Observed)> {
+    let usual = TriedRig::usual();
+    let same = |rig: &TriedRig| {
         let pairs = rig.values.iter().zip(usual.values).enumerate();
         pairs.into_iter().all(|(at, (value, usual))| at == factor || *value == usual)
     };
@@ -242,11 +230,11 @@ fn spread(rigs: &[(f64, &Observed)], si: f64, name: &str, of: Of) -> Series {
 }
 
 /// Rebound over speed against speed.
-fn rebounds(evidence: &Evidence) -> Figure {
+fn rebounds(evidence: &RigEvidence) -> Figure {
     let mut chart = Chart::new("Striker speed $v_0$ (m/s)", "Rebound / $v_0$").x_log();
     for observed in shown(evidence) {
         let speeds: Vec<f64> = observed.speeds.iter().map(|at| at.speed_m_s).collect();
-        let share = |at: &AtSpeed| {
+        let share = |at: &SpeedSeries| {
             let all: Vec<f64> = at.tapped.iter().map(rebound_m_s).collect();
             -mean(&all) / at.speed_m_s
         };
@@ -257,8 +245,8 @@ fn rebounds(evidence: &Evidence) -> Figure {
 }
 
 /// The usual rig and those that differ from it in friction or push.
-fn shown(evidence: &Evidence) -> Vec<&Observed> {
-    let same = |rig: &Rig| rig.values[2..] == Rig::usual().values[2..];
+fn shown(evidence: &RigEvidence) -> Vec<&Observed> {
+    let same = |rig: &TriedRig| rig.values[2..] == TriedRig::usual().values[2..];
     let rigs = evidence.rigs.iter();
     rigs.filter(|observed| same(&observed.rig)).collect()
 }
@@ -266,7 +254,7 @@ fn shown(evidence: &Evidence) -> Vec<&Observed> {
 /// Gaps after the fastest shots and after the taps that follow, contact by
 /// contact, on the three rigs that are left loosest, no two of the same friction
 /// and push.
-fn gaps(evidence: &Evidence) -> Figure {
+fn gaps(evidence: &RigEvidence) -> Figure {
     let mut rigs: Vec<&Observed> = evidence.rigs.iter().collect();
     rigs.sort_by(|one, other| left_m(other).total_cmp(&left_m(one)));
     let friction_and_push = |observed: &Observed| [observed.rig.values[0], observed.rig.values[1]];
@@ -296,7 +284,7 @@ fn left_m(observed: &Observed) -> f64 {
 /// Gaps below this in m are shown in nm.
 const SMALL_M: f64 = 1e-7;
 
-fn row(observed: &Observed, at: &AtSpeed) -> Chart {
+fn row(observed: &Observed, at: &SpeedSeries) -> Chart {
     let before: Vec<&[f64]> = at.tapped.iter().map(|shot| &*shot.gaps_before_m).collect();
     let after: Vec<&[f64]> = at.tapped.iter().map(|shot| &*shot.gaps_after_m).collect();
     let (before_m, after_m) = (means(&before), means(&after));
@@ -320,7 +308,7 @@ fn row(observed: &Observed, at: &AtSpeed) -> Chart {
 }
 
 /// What holds the beads of a rig where they are, of the factors that are tried.
-fn held(rig: &Rig) -> String {
+fn held(rig: &TriedRig) -> String {
     let [friction, push] = [0, 1].map(|at: usize| FACTORS[at].text(rig.values[at]));
     format!("{friction}, {push}")
 }

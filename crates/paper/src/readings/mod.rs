@@ -6,5 +6,5 @@ mod scan;
 
 pub(crate) use report::{FLIPPED, scan_csv, scan_markdown, two_digits_markdown};
 pub(crate) use rounding::rounded_evidence;
-pub use rounding::{Draw, DryPoisson, Prefactors};
-pub use scan::{Row, Scan, scan};
+pub use rounding::{Draw, DryPoisson};
+pub use scan::{ReadingRow, ReadingScan, scan};

@@ -1,6 +1,6 @@
 //! A scan over readings as a table and a page.
 
-use super::scan::{Row, Scan, SwitchOptions};
+use super::scan::{ReadingRow, ReadingScan, SwitchOptions};
 use crate::claims::{Claim, EvaluatedClaim, Verdict, rounded_text, verdicts_text, with_unit};
 use hertzchain_experiment::Reading;
 use std::collections::HashSet;
@@ -14,7 +14,7 @@ pub(crate) const FLIPPED: &str = "†";
 const FLIPPED_IN_CLOSEST: &str = "‡";
 
 /// One row a reading: its switches, its score, the verdict of each claim.
-pub(crate) fn scan_csv(scan: &Scan) -> String {
+pub(crate) fn scan_csv(scan: &ReadingScan) -> String {
     let switches = Reading::switches().iter().map(|switch| switch.name);
     let claims = scan.claims.iter().map(|claim| claim.id.as_str());
     let header: Vec<&str> = switches.chain(["score"]).chain(claims).collect();
@@ -32,7 +32,7 @@ pub(crate) fn scan_csv(scan: &Scan) -> String {
 }
 
 /// What the scan shows, for people.
-pub(crate) fn scan_markdown(scan: &Scan) -> String {
+pub(crate) fn scan_markdown(scan: &ReadingScan) -> String {
     let mut page = String::from("# Which claims hold in which reading\n\n");
     page.push_str(
         "The paper leaves open what these switches decide. The score counts a claim that holds as \
@@ -55,7 +55,7 @@ pub(crate) fn scan_markdown(scan: &Scan) -> String {
 }
 
 /// What the mark means, and how many claims have it.
-fn rounding(page: &mut String, scan: &Scan) {
+fn rounding(page: &mut String, scan: &ReadingScan) {
     let count = scan.flipped_by_rounding.len();
     if count > 0 {
         let _ = writeln!(
@@ -66,20 +66,20 @@ fn rounding(page: &mut String, scan: &Scan) {
     }
 }
 
-fn table_row(page: &mut String, scan: &Scan, row: &Row) {
+fn table_row(page: &mut String, scan: &ReadingScan, row: &ReadingRow) {
     let (gained, lost) = row.against(&scan.default);
     let (gained, lost) = (names(scan, &gained), names(scan, &lost));
     let _ = writeln!(page, "| {} | {} | {gained} | {lost} |", row.reading, row.score());
 }
 
 /// Names of claims, by index.
-fn names(scan: &Scan, claims: &[usize]) -> String {
+fn names(scan: &ReadingScan, claims: &[usize]) -> String {
     let names = claims.iter().filter_map(|claim| name(scan, *claim));
     names.collect::<Vec<_>>().join(", ")
 }
 
 /// A claim's name, marked if rounding flips it.
-fn name(scan: &Scan, claim: usize) -> Option<String> {
+fn name(scan: &ReadingScan, claim: usize) -> Option<String> {
     let id = &scan.claims.get(claim)?.id;
     Some(match scan.flipped_by_rounding.contains(&claim) {
         true => format!("{id}{FLIPPED}"),
@@ -87,7 +87,7 @@ fn name(scan: &Scan, claim: usize) -> Option<String> {
     })
 }
 
-fn product(page: &mut String, scan: &Scan) {
+fn product(page: &mut String, scan: &ReadingScan) {
     let (tried, all) = (scan.product.len(), scan.full_product_size());
     page.push_str(match tried < all {
         true => "\n## Part of the full product\n\n",
@@ -109,9 +109,9 @@ fn product(page: &mut String, scan: &Scan) {
         );
     }
     page.push_str("\nThe ten best:\n\n| reading | score | gained | lost |\n|---|---|---|---|\n");
-    let mut rows: Vec<&Row> = scan.product.iter().collect();
+    let mut rows: Vec<&ReadingRow> = scan.product.iter().collect();
     rows.sort_by(|a, b| {
-        let changes = |row: &Row| row.reading.changes().len();
+        let changes = |row: &ReadingRow| row.reading.changes().len();
         b.score().total_cmp(&a.score()).then(changes(a).cmp(&changes(b)))
     });
     for row in rows.into_iter().take(10) {
@@ -125,7 +125,7 @@ fn factors(factors: &[SwitchOptions]) -> String {
     texts.collect::<Vec<_>>().join(", ")
 }
 
-fn closest(page: &mut String, scan: &Scan) {
+fn closest(page: &mut String, scan: &ReadingScan) {
     let row = scan.closest();
     let (gained, lost) = row.against(&scan.default);
     page.push_str("\n## Closest to the paper\n\n");
@@ -165,10 +165,10 @@ fn closest(page: &mut String, scan: &Scan) {
 
 /// Verdict and value of every claim in the default and the closest reading:
 /// what changes within a verdict shows too.
-fn side_by_side(page: &mut String, scan: &Scan) {
+fn side_by_side(page: &mut String, scan: &ReadingScan) {
     page.push_str("\n| claim | default | value | closest | value |\n|---|---|---|---|---|\n");
     let closest = scan.closest();
-    let cells = |row: &Row, i: usize, claim: &Claim| {
+    let cells = |row: &ReadingRow, i: usize, claim: &Claim| {
         let verdict = row.verdicts.get(i).map_or("", |v| v.name());
         let value = row.values.get(i).filter(|value| value.is_finite());
         let value = value.map_or("none".to_owned(), |value| with_unit(*value, claim));
@@ -184,7 +184,7 @@ fn side_by_side(page: &mut String, scan: &Scan) {
     }
 }
 
-fn prices(page: &mut String, scan: &Scan) {
+fn prices(page: &mut String, scan: &ReadingScan) {
     page.push_str("\n## What the open claims cost\n\n");
     page.push_str(
         "For each claim that does not fully hold in the default reading: the reading that meets it \
@@ -193,7 +193,7 @@ fn prices(page: &mut String, scan: &Scan) {
     );
     for price in scan.prices() {
         let name = names(scan, &[price.claim]);
-        let verdict = |row: &Row| row.verdicts.get(price.claim).map_or("", |v| v.name());
+        let verdict = |row: &ReadingRow| row.verdicts.get(price.claim).map_or("", |v| v.name());
         let default = verdict(&scan.default);
         match &price.row {
             None => {

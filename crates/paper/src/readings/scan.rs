@@ -2,13 +2,15 @@
 
 use super::rounding::sharpened;
 use crate::claims::{Claim, Evaluator, Verdict, claims};
-use crate::reproduce::{Effort, Gathering, Progress, ReproduceError, ShotCache, gather_cached};
+use crate::reproduce::{
+    Cases, Effort, Gathering, Progress, ReproduceError, ShotCache, gather_cached,
+};
 use hertzchain_experiment::Reading;
 use std::time::Instant;
 
 /// The claims' verdicts in one reading.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct ReadingRow {
     /// The reading.
     pub reading: Reading,
     /// One verdict a claim.
@@ -17,22 +19,19 @@ pub struct Row {
     pub values: Vec<f64>,
 }
 
-impl Row {
+impl ReadingRow {
     /// Claims met, those in part for a half.
-    #[must_use]
     pub fn score(&self) -> f64 {
         self.verdicts.iter().map(|verdict| verdict.score()).sum()
     }
 
     /// The same without claims that rounding of the printed constants leaves open.
-    #[must_use]
     pub fn score_without(&self, flipped: &[usize]) -> f64 {
         let open = flipped.iter().filter_map(|&claim| self.verdicts.get(claim));
         self.score() - open.map(|verdict| verdict.score()).sum::<f64>()
     }
 
     /// Claims met better, and worse, than in another reading, by index.
-    #[must_use]
     pub fn against(&self, other: &Self) -> (Vec<usize>, Vec<usize>) {
         let scores = self.verdicts.iter().zip(&other.verdicts).enumerate();
         let changes: Vec<(usize, f64)> =
@@ -55,27 +54,27 @@ pub(crate) struct Price {
     pub claim: usize,
     /// The best reading in which it is met better than in the default one;
     /// `None` when no reading that was tried does.
-    pub row: Option<Row>,
+    pub row: Option<ReadingRow>,
 }
 
 /// The claims in many readings.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scan {
+pub struct ReadingScan {
     /// The claims.
     pub claims: Vec<Claim>,
     /// The default reading.
-    pub default: Row,
+    pub default: ReadingRow,
     /// One switch changed at a time.
-    pub single: Vec<Row>,
+    pub single: Vec<ReadingRow>,
     /// Switches of the full product with their options, the default first.
     pub product_of: Vec<SwitchOptions>,
     /// Switches that move a verdict but would have made the product larger
     /// than asked; the search for the closest reading still tries them.
     pub left_out: Vec<SwitchOptions>,
     /// The product.
-    pub product: Vec<Row>,
+    pub product: Vec<ReadingRow>,
     /// Readings tried on the way from the best of the product to the closest.
-    pub search: Vec<Row>,
+    pub search: Vec<ReadingRow>,
     /// Claims, by index, whose verdict in the default reading rounding of the
     /// printed constants alone flips; a scan by itself looks at no rounding.
     pub flipped_by_rounding: Vec<usize>,
@@ -95,7 +94,7 @@ pub fn scan(
     speeds_m_s: &[f64],
     accuracy: f64,
     progress: &dyn Progress,
-) -> Result<Scan, ReproduceError> {
+) -> Result<ReadingScan, ReproduceError> {
     let start = Instant::now();
     let scanner = Scanner {
         evaluators: claims()?,
@@ -116,7 +115,7 @@ pub fn scan(
     let product = scanner.rows(&readings)?;
     let start = best(single.iter().chain(&product).chain([&default])).clone();
     let search = scanner.climb(start)?;
-    Ok(Scan {
+    Ok(ReadingScan {
         claims: scanner.evaluators.into_iter().map(|evaluator| evaluator.claim).collect(),
         default,
         single,
@@ -136,21 +135,20 @@ fn forecast(readings: usize, pace_s: f64) -> String {
     format!("{readings} readings to combine: at the pace so far {minutes} min or less")
 }
 
-impl Scan {
+impl ReadingScan {
     /// Every reading that was tried, the default first.
-    pub fn rows(&self) -> impl Iterator<Item = &Row> {
+    pub fn rows(&self) -> impl Iterator<Item = &ReadingRow> {
         let rest = self.single.iter().chain(&self.product).chain(&self.search);
         std::iter::once(&self.default).chain(rest)
     }
 
     /// The reading that meets most claims; of equals, the one with fewest
     /// changes.
-    #[must_use]
-    pub fn closest(&self) -> &Row {
+    pub fn closest(&self) -> &ReadingRow {
         best(self.rows())
     }
 
-    /// Readings of the full product, of which [`Scan::product`] has those that
+    /// Readings of the full product, of which [`ReadingScan::product`] has those that
     /// there was room for.
     pub(crate) fn full_product_size(&self) -> usize {
         let options = self.left_out.iter().map(|(_, options)| options.len());
@@ -158,10 +156,9 @@ impl Scan {
     }
 
     /// Other readings that meet as many claims as the closest.
-    #[must_use]
-    pub fn as_close(&self) -> Vec<&Row> {
+    pub fn as_close(&self) -> Vec<&ReadingRow> {
         let closest = self.closest();
-        let mut found: Vec<&Row> = Vec::new();
+        let mut found: Vec<&ReadingRow> = Vec::new();
         for row in self.rows() {
             let listed = found.iter().any(|other| other.reading == row.reading);
             if row.score() == closest.score() && row.reading != closest.reading && !listed {
@@ -173,7 +170,6 @@ impl Scan {
 
     /// For each claim that the default reading does not fully meet, the best
     /// reading that meets it better.
-    #[must_use]
     pub(crate) fn prices(&self) -> Vec<Price> {
         let open = self.default.verdicts.iter().enumerate();
         let open = open.filter(|(_, verdict)| **verdict != Verdict::Holds);
@@ -181,7 +177,7 @@ impl Scan {
     }
 
     fn price(&self, claim: usize, verdict: Verdict) -> Price {
-        let score = |row: &&Row| row.verdicts.get(claim).map_or(0.0, |v| v.score());
+        let score = |row: &&ReadingRow| row.verdicts.get(claim).map_or(0.0, |v| v.score());
         let most = self.rows().map(|row| score(&row)).fold(0.0, f64::max);
         let better = self.rows().filter(|row| score(row) == most && most > verdict.score());
         let row = better.reduce(|a, b| if closer(b, a) { b } else { a });
@@ -190,12 +186,12 @@ impl Scan {
 }
 
 /// Whether one reading meets more than another, or as much with fewer changes.
-fn closer(one: &Row, other: &Row) -> bool {
-    let rank = |row: &Row| (row.score(), usize::MAX - row.reading.changes().len());
+fn closer(one: &ReadingRow, other: &ReadingRow) -> bool {
+    let rank = |row: &ReadingRow| (row.score(), usize::MAX - row.reading.changes().len());
     rank(one) > rank(other)
 }
 
-fn best<'a>(rows: impl IntoIterator<Item = &'a Row>) -> &'a Row {
+fn best<'a>(rows: impl IntoIterator<Item = &'a ReadingRow>) -> &'a ReadingRow {
     let best = rows.into_iter().reduce(|a, b| if closer(b, a) { b } else { a });
     best.expect("the default reading is always among the rows")
 }
@@ -213,7 +209,11 @@ pub type SwitchOptions = (&'static str, Vec<&'static str>);
 
 /// Switches of the product, those that move most verdicts first, until the
 /// product would be too large; and those for which there was no room.
-fn factors(default: &Row, single: &[Row], most: usize) -> (Vec<SwitchOptions>, Vec<SwitchOptions>) {
+fn factors(
+    default: &ReadingRow,
+    single: &[ReadingRow],
+    most: usize,
+) -> (Vec<SwitchOptions>, Vec<SwitchOptions>) {
     let mut moving: Vec<(usize, SwitchOptions)> = Vec::new();
     for switch in Reading::switches() {
         let mut options: Vec<&'static str> = switch.options.first().copied().into_iter().collect();
@@ -266,23 +266,20 @@ struct Scanner<'a> {
 }
 
 impl Scanner<'_> {
-    fn row(&self, reading: &Reading) -> Result<Row, ReproduceError> {
+    fn row(&self, reading: &Reading) -> Result<ReadingRow, ReproduceError> {
         let accuracies = [self.accuracy, 0.1 * self.accuracy];
+        let cases = Cases::new(reading)?;
         let evidence = sharpened(&self.evaluators, &accuracies, &|accuracy| {
-            let how = Gathering {
-                reading: *reading,
-                speeds_m_s: self.speeds_m_s,
-                accuracy,
-                effort: Effort::Lean(&self.evaluators),
-            };
+            let (speeds_m_s, effort) = (self.speeds_m_s, Effort::Lean(&self.evaluators));
+            let how = Gathering { cases: &cases, speeds_m_s, accuracy, effort };
             gather_cached(&how, &self.cache)
         })?;
         let findings = self.evaluators.iter().map(|evaluator| evaluator.decide(&evidence));
         let (verdicts, values) = findings.map(|f| (f.verdict, f.value)).unzip();
-        Ok(Row { reading: *reading, verdicts, values })
+        Ok(ReadingRow { reading: *reading, verdicts, values })
     }
 
-    fn rows(&self, readings: &[Reading]) -> Result<Vec<Row>, ReproduceError> {
+    fn rows(&self, readings: &[Reading]) -> Result<Vec<ReadingRow>, ReproduceError> {
         let row = |reading: &Reading| {
             let row = self.row(reading);
             self.progress.advance();
@@ -292,7 +289,7 @@ impl Scanner<'_> {
     }
 
     /// From a reading, one switch at a time, for as long as that improves it.
-    fn climb(&self, mut at: Row) -> Result<Vec<Row>, ReproduceError> {
+    fn climb(&self, mut at: ReadingRow) -> Result<Vec<ReadingRow>, ReproduceError> {
         let mut tried = Vec::new();
         loop {
             let readings = singles(&at.reading);

@@ -1,7 +1,7 @@
 //! The paper's chains and speeds, and the errors of a reproduction.
 
-use crate::claims::{ClaimError, Oil};
-use hertzchain_experiment::{Experiment, Mistakes, Reading, SwitchError, UnknownPreset, preset};
+use crate::claims::{ClaimError, PrintedOil};
+use hertzchain_experiment::{Experiment, Mistakes, PathError, Reading, UnknownName, preset};
 use hertzchain_sim::StudyError;
 
 /// Speeds of the tables and curves in m/s: those that the paper names or that
@@ -36,24 +36,31 @@ impl Cases {
         all.collect::<Result<_, ReproduceError>>().map(Self)
     }
 
+    /// The cases with each experiment changed.
+    pub(crate) fn changed(
+        &self,
+        change: impl Fn(&str, &Experiment) -> Result<Experiment, PathError>,
+    ) -> Result<Self, ReproduceError> {
+        let changed = |(case, own): &(&'static str, Experiment)| Ok((*case, change(case, own)?));
+        self.0.iter().map(changed).collect::<Result<_, ReproduceError>>().map(Self)
+    }
+
     /// Names and experiments, in the order of the tables.
     pub(super) fn all(&self) -> &[(&'static str, Experiment)] {
         &self.0
     }
 
     /// The experiment of a case.
-    #[must_use]
     pub fn get(&self, case: &str) -> Option<&Experiment> {
         let found = self.0.iter().find(|(name, _)| *name == case);
         found.map(|(_, experiment)| experiment)
     }
 
     /// The liquids as printed.
-    #[must_use]
-    pub fn oils(&self) -> Vec<Oil> {
+    pub fn oils(&self) -> Vec<PrintedOil> {
         let oil = |case: &&str| {
             let liquid = self.get(case)?.liquid()?;
-            Some(Oil {
+            Some(PrintedOil {
                 case: (*case).to_owned(),
                 kinematic_viscosity_m2_s: liquid.kinematic_viscosity_m2_s?,
                 density_kg_m3: liquid.density_kg_m3?,
@@ -79,12 +86,12 @@ pub enum ReproduceError {
     /// A reading that an experiment can't have.
     #[error(transparent)]
     Mistakes(#[from] Mistakes),
-    /// A switch that does not exist.
+    /// A number that an experiment can't have.
     #[error(transparent)]
-    Reading(SwitchError),
+    Number(#[from] PathError),
     /// One of the paper's chains is missing from the program.
     #[error(transparent)]
-    Preset(UnknownPreset),
+    Preset(UnknownName),
     /// A case that does not exist.
     #[error("there is no case `{0}`")]
     NoCase(String),

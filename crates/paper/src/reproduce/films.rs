@@ -70,7 +70,7 @@ fn signal(
     accuracy: f64,
 ) -> Result<SignalShot, ReproduceError> {
     let experiment = cases.get(case).ok_or_else(|| no_case(case))?;
-    let plan = plan(case, experiment, speed_m_s, accuracy, &|_, _, _| {})?.for_flights();
+    let plan = plan(experiment, speed_m_s, accuracy)?.for_flights();
     let channel = Sensor::BeadPlusWall(plan.sensor_bead);
     let shot = shoot(&plan.watching(vec![channel], Some(SIGNAL_SAMPLE_S)))
         .map_err(|error| failed(case, speed_m_s, error))?;
@@ -98,7 +98,7 @@ pub(super) fn films(cases: &Cases) -> Result<Vec<Film>, ReproduceError> {
 
 fn film(cases: &Cases, case: &str, speed_m_s: f64) -> Result<Film, ReproduceError> {
     let experiment = cases.get(case).ok_or_else(|| no_case(case))?;
-    let plan = plan(case, experiment, speed_m_s, FILM_ACCURACY, &|_, _, _| {})?.for_flights();
+    let plan = plan(experiment, speed_m_s, FILM_ACCURACY)?.for_flights();
     let bodies = (0..=plan.chain.beads.len()).map(Sensor::Velocity).collect();
     let shot = shoot(&plan.with_budget().watching(bodies, Some(FRAME_S)))
         .map_err(|error| failed(case, speed_m_s, error))?;

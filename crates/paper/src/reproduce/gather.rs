@@ -3,9 +3,9 @@
 use super::ReproduceError;
 use super::cases::{Cases, failed};
 use super::point::{checked, excess_s, read_off_all};
-use crate::claims::{Curve, Evaluator, Evidence, Point};
-use hertzchain_chain::{Chain, Sensor};
-use hertzchain_experiment::{Experiment, Reading};
+use crate::claims::{Curve, Evaluator, Evidence, ShotPoint};
+use hertzchain_chain::Sensor;
+use hertzchain_experiment::Experiment;
 use hertzchain_sim::{Control, InstructionSet, Pick, Plan, Shot, StudyError, run_plans, shoot};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -15,8 +15,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// How the paper's chains are shot.
 #[derive(Clone, Debug)]
 pub struct Gathering<'a> {
-    /// What the paper leaves open.
-    pub reading: Reading,
+    /// The chains.
+    pub cases: &'a Cases,
     /// Speeds of the striker in m/s.
     pub speeds_m_s: &'a [f64],
     /// Relative accuracy asked of ToFs.
@@ -36,23 +36,16 @@ pub enum Effort<'a> {
     Lean(&'a [Evaluator]),
 }
 
-/// Changes a chain of a case, hit at a speed, before it is shot.
-pub type Change<'a> = &'a (dyn Fn(&str, f64, &mut Chain) + Sync);
-
 /// Shoots all cases at all speeds, on all cores; `done` is called after each
 /// shot, from any thread. The result does not depend on their number.
 ///
 /// # Errors
 /// The first shot that can't be computed, in the order of the tables.
-pub fn gather(
-    how: &Gathering<'_>,
-    change: Change<'_>,
-    done: &(dyn Fn() + Sync),
-) -> Result<Evidence, ReproduceError> {
-    gathered(how, change, None, done)
+pub fn gather(how: &Gathering<'_>, done: &(dyn Fn() + Sync)) -> Result<Evidence, ReproduceError> {
+    gathered(how, None, done)
 }
 
-/// The same without changes, with a cache of shots.
+/// The same with a cache of shots.
 ///
 /// # Errors
 /// As [`gather`].
@@ -60,21 +53,20 @@ pub(crate) fn gather_cached(
     how: &Gathering<'_>,
     cache: &ShotCache,
 ) -> Result<Evidence, ReproduceError> {
-    gathered(how, &|_, _, _| {}, Some(cache), &|| {})
+    gathered(how, Some(cache), &|| {})
 }
 
 fn gathered(
     how: &Gathering<'_>,
-    change: Change<'_>,
     cache: Option<&ShotCache>,
     done: &(dyn Fn() + Sync),
 ) -> Result<Evidence, ReproduceError> {
-    let cases = Cases::new(&how.reading)?;
+    let cases = how.cases;
     let all = cases.all().iter();
     let jobs = all.flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)));
     let jobs: Vec<_> = jobs.collect();
     let target = |&((case, experiment), speed): &(&(&'static str, Experiment), f64)| {
-        let target = ShotTarget::new(case, experiment, speed, how, change)?;
+        let target = ShotTarget::new(case, experiment, speed, how)?;
         // What is cached serves every pick.
         Ok::<_, ReproduceError>(match cache {
             Some(_) => target.comparing_picks(),
@@ -92,18 +84,17 @@ fn gathered(
     Ok(Evidence {
         curves: curves.collect(),
         oils: cases.oils(),
-        viscosity_over_modulus_s: viscosity_over_modulus(&cases, change)?,
+        viscosity_over_modulus_s: viscosity_over_modulus(cases)?,
         digitised: Vec::new(),
     })
 }
 
 /// η/Y of the dry balls in s.
-fn viscosity_over_modulus(cases: &Cases, change: Change<'_>) -> Result<f64, ReproduceError> {
+fn viscosity_over_modulus(cases: &Cases) -> Result<f64, ReproduceError> {
     let Some(dry) = cases.get("dry") else {
         return Ok(f64::NAN);
     };
-    let (mut chain, _) = dry.chain(Some(1.0))?;
-    change("dry", 1.0, &mut chain);
+    let (chain, _) = dry.chain(Some(1.0))?;
     let material = chain.beads.first().map(|bead| bead.material);
     Ok(material.map_or(f64::NAN, |m| m.shear_viscosity_pa_s / m.young_modulus_pa))
 }
@@ -128,9 +119,8 @@ impl ShotTarget {
         experiment: &Experiment,
         speed_m_s: f64,
         how: &Gathering<'_>,
-        change: Change<'_>,
     ) -> Result<Self, ReproduceError> {
-        let plan = plan(case, experiment, speed_m_s, how.accuracy, change)?;
+        let plan = plan(experiment, speed_m_s, how.accuracy)?;
         let asks = |what: fn(&Evaluator, &str, f64) -> bool| match how.effort {
             Effort::Checked => true,
             Effort::Lean(evaluators) => {
@@ -152,7 +142,7 @@ impl ShotTarget {
     }
 
     /// The point of the target's own pick.
-    fn own(&self, mut points: Vec<Point>) -> Option<Point> {
+    fn own(&self, mut points: Vec<ShotPoint>) -> Option<ShotPoint> {
         let at = self.plan.picks().position(|pick| pick == self.pick)?;
         (at < points.len()).then(|| points.swap_remove(at))
     }
@@ -161,7 +151,7 @@ impl ShotTarget {
         failed(self.case, self.speed_m_s, error)
     }
 
-    fn points(&self, shot: Result<Shot, StudyError>) -> Result<Vec<Point>, ReproduceError> {
+    fn points(&self, shot: Result<Shot, StudyError>) -> Result<Vec<ShotPoint>, ReproduceError> {
         let shot = shot.map_err(|error| self.failed(error))?;
         let mut points = read_off_all(&self.plan, self.speed_m_s, &shot);
         if self.closing {
@@ -178,14 +168,14 @@ fn shot_at(
     effort: Effort<'_>,
     cache: Option<&ShotCache>,
     done: &(dyn Fn() + Sync),
-) -> Result<Vec<Point>, ReproduceError> {
+) -> Result<Vec<ShotPoint>, ReproduceError> {
     let known = |target: &ShotTarget| {
         let points = cache.and_then(|cache| cache.restored(&target.plan))?;
         // Two cases may share a plan of which only one asks for the way back without gaps.
         let has_all = !target.closing || points.iter().all(|point| !point.excess_s[1].is_nan());
         has_all.then_some(points)
     };
-    let mut points: Vec<Option<Vec<Point>>> = targets.par_iter().map(known).collect();
+    let mut points: Vec<Option<Vec<ShotPoint>>> = targets.par_iter().map(known).collect();
     let new = || targets.iter().zip(&points).enumerate();
     let new = new().filter_map(|(at, (target, point))| point.is_none().then_some((at, target)));
     let new: Vec<(usize, &ShotTarget)> = new.collect();
@@ -206,7 +196,7 @@ fn shot_at(
 fn checked_points(
     targets: &[(usize, &ShotTarget)],
     done: &(dyn Fn() + Sync),
-) -> Result<Vec<Vec<Point>>, ReproduceError> {
+) -> Result<Vec<Vec<ShotPoint>>, ReproduceError> {
     let one = |(_, target): &(usize, &ShotTarget)| {
         let point = checked(&target.plan, target.speed_m_s);
         done();
@@ -220,7 +210,7 @@ fn checked_points(
 fn lean_points(
     targets: &[(usize, &ShotTarget)],
     done: &(dyn Fn() + Sync),
-) -> Result<Vec<Vec<Point>>, ReproduceError> {
+) -> Result<Vec<Vec<ShotPoint>>, ReproduceError> {
     let passing = targets.iter().filter(|(_, t)| !t.plan.rebound);
     let plans: Vec<Plan> = passing.map(|(_, target)| target.plan.clone()).collect();
     let set = InstructionSet::default();
@@ -242,38 +232,34 @@ fn lean_points(
 
 /// The plan of a shot of a case.
 pub(super) fn plan(
-    case: &str,
     experiment: &Experiment,
     speed_m_s: f64,
     accuracy: f64,
-    change: Change<'_>,
 ) -> Result<Plan, ReproduceError> {
     // The cases' ν above 1/2 is the paper's and said in the reading.
-    let (mut plan, _warnings) = Plan::from_experiment(experiment, Some(speed_m_s))?;
-    change(case, speed_m_s, &mut plan.chain);
-    plan.accuracy = accuracy;
-    Ok(plan)
+    let (plan, _warnings) = Plan::from_experiment(experiment, Some(speed_m_s))?;
+    Ok(plan.with_accuracy(accuracy))
 }
 
 /// Cache of shots by everything that decides them, each as every pick times it:
 /// many readings leave many of the paper's chains as they are.
 #[derive(Debug, Default)]
-pub(crate) struct ShotCache(Mutex<HashMap<[u64; 2], Vec<Point>>>);
+pub(crate) struct ShotCache(Mutex<HashMap<[u64; 2], Vec<ShotPoint>>>);
 
 impl ShotCache {
     /// The stored points of a plan, one a pick.
-    fn restored(&self, plan: &Plan) -> Option<Vec<Point>> {
+    fn restored(&self, plan: &Plan) -> Option<Vec<ShotPoint>> {
         let key = key(plan);
         self.lock().get(&key).cloned()
     }
 
     /// Stores the points of a plan.
-    fn store(&self, plan: &Plan, points: &[Point]) {
+    fn store(&self, plan: &Plan, points: &[ShotPoint]) {
         let key = key(plan);
         self.lock().insert(key, points.to_vec());
     }
 
-    fn lock(&self) -> MutexGuard<'_, HashMap<[u64; 2], Vec<Point>>> {
+    fn lock(&self) -> MutexGuard<'_, HashMap<[u64; 2], Vec<ShotPoint>>> {
         // A panic elsewhere leaves whole points behind.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,6 +1,6 @@
 //! The numbers of one shot with their accuracies.
 
-use crate::claims::Point;
+use crate::claims::ShotPoint;
 use hertzchain_chain::observe::{Passage, RETURN_WITHIN, Signal};
 use hertzchain_chain::settle::State;
 use hertzchain_chain::wave::{Limits, run};
@@ -34,12 +34,12 @@ const FINEST: f64 = 1e-12;
 /// Computes a shot, and again at a tenth of the tolerance: what this changes shows
 /// the accuracy of every number. Where times of flight change by more than the
 /// accuracy asked, the finer shot takes its place.
-pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> {
+pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<ShotPoint, StudyError> {
     let at = |accuracy: f64| {
         let plan = plan.clone().with_accuracy(accuracy);
         let shot = shoot(&plan)?;
         let point = read_off(&plan, speed_m_s, &shot);
-        Ok::<_, StudyError>(Point { excess_s: excess_s(&plan, &shot)?, ..point })
+        Ok::<_, StudyError>(ShotPoint { excess_s: excess_s(&plan, &shot)?, ..point })
     };
     let mut accuracy = plan.accuracy;
     let mut point = at(accuracy)?;
@@ -57,8 +57,8 @@ pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<Point, StudyError> 
 
 /// A point whose accuracies follow from what a finer computation changes and from
 /// the tolerance of a step.
-fn evaluated(point: Point, finer: &Point, tolerance: f64) -> Point {
-    let largest = |number: &dyn Fn(&Point) -> Vec<f64>, relative: bool| {
+fn evaluated(point: ShotPoint, finer: &ShotPoint, tolerance: f64) -> ShotPoint {
+    let largest = |number: &dyn Fn(&ShotPoint) -> Vec<f64>, relative: bool| {
         let pairs = number(&point).into_iter().zip(number(finer));
         let off = pairs.map(|(a, b)| {
             let off = reached([(a - b).abs(), 0.0], 1.0, tolerance * b.abs());
@@ -67,10 +67,10 @@ fn evaluated(point: Point, finer: &Point, tolerance: f64) -> Point {
         // What neither shot gave is not wrong.
         off.filter(|off| !off.is_nan()).fold(0.0, f64::max)
     };
-    let tofs = |p: &Point| vec![p.tof_incident_s, p.tof_reflected_s];
-    let peaks = |p: &Point| vec![p.sensor_peak_n, p.wall_peak_n, p.returning_peak_n];
-    let striker = |p: &Point| vec![p.striker_separation_m_s, p.striker_rebound_m_s];
-    Point {
+    let tofs = |p: &ShotPoint| vec![p.tof_incident_s, p.tof_reflected_s];
+    let peaks = |p: &ShotPoint| vec![p.sensor_peak_n, p.wall_peak_n, p.returning_peak_n];
+    let striker = |p: &ShotPoint| vec![p.striker_separation_m_s, p.striker_rebound_m_s];
+    ShotPoint {
         accuracy_reached: largest(&tofs, true),
         peak_accuracy: largest(&peaks, true),
         second_peak_accuracy_n: largest(&|p| vec![p.second_returning_peak_n], false),
@@ -83,14 +83,14 @@ fn evaluated(point: Point, finer: &Point, tolerance: f64) -> Point {
 }
 
 /// The numbers of a shot, one point a pick of its plan.
-pub(super) fn read_off_all(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Vec<Point> {
+pub(super) fn read_off_all(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Vec<ShotPoint> {
     let point = read_off(plan, speed_m_s, shot);
     let flights = std::iter::once(&shot.flight).chain(&shot.compared);
     let timed = |flight: &Option<Flight>| point.clone().timed(*flight);
     flights.map(timed).collect()
 }
 
-impl Point {
+impl ShotPoint {
     fn timed(self, flight: Option<Flight>) -> Self {
         Self {
             tof_incident_s: flight.map_or(f64::NAN, |f| f.incident_s),
@@ -101,14 +101,14 @@ impl Point {
 }
 
 /// The numbers of a shot.
-pub(super) fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Point {
+pub(super) fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> ShotPoint {
     let passage = shot.passage.as_ref().ok();
     let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let rebound = shot.rebound;
     let returning_peak_n = or_nan(passage.and_then(|p| p.reflected).map(|peak| peak.value));
     let loosened_m = or_nan(loosened(shot));
     let asked = shot.accuracy_asked;
-    Point {
+    ShotPoint {
         speed_m_s,
         tof_incident_s: or_nan(shot.flight.map(|f| f.incident_s)),
         tof_reflected_s: or_nan(shot.flight.and_then(|f| f.reflected_s)),

@@ -2,6 +2,7 @@
 //! the progress of a long computation.
 
 use super::ReproduceError;
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Component, Path};
@@ -14,7 +15,7 @@ pub const PROVENANCE: &str = "provenance.json";
 const PROGRAM: &str = "hertzchain";
 
 /// Where the numbers of a reproduction come from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Serialize, PartialEq)]
 pub struct Provenance {
     /// Version of this program.
     pub version: &'static str,
@@ -31,6 +32,7 @@ pub struct Provenance {
     /// Seed of all draws.
     pub seed: u64,
     /// Draws of the printed constants within their rounding.
+    #[serde(rename = "draws_within_rounding")]
     pub draws: usize,
     /// Instruction set, operating system, processor, number of threads.
     pub machine: String,
@@ -40,29 +42,17 @@ pub struct Provenance {
 
 impl Provenance {
     /// As JSON, with the names of the run's files.
-    #[must_use]
     pub fn json(&self, files: &[&str]) -> Value {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
-        json!({
-            "program": PROGRAM,
-            "version": self.version,
-            "commit": self.commit,
-            "solver": self.solver,
-            "tolerance": self.tolerance,
-            "accuracy_asked": self.accuracy_asked,
-            "accuracy_reached": self.accuracy_reached,
-            "seed": self.seed,
-            "draws_within_rounding": self.draws,
-            "machine": self.machine,
-            "finished_unix_s": now.as_ref().map_or(0, Duration::as_secs),
-            "wall_time_s": self.wall_time_s,
-            "files": files,
-        })
+        let mut about = serde_json::to_value(self).unwrap_or_default();
+        about["program"] = json!(PROGRAM);
+        about["finished_unix_s"] = json!(now.as_ref().map_or(0, Duration::as_secs));
+        about["files"] = json!(files);
+        about
     }
 }
 
 /// Instruction set, operating system, processor, number of threads.
-#[must_use]
 pub(super) fn machine() -> String {
     let threads = rayon::current_num_threads();
     let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);

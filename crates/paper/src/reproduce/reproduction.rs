@@ -10,7 +10,7 @@ use crate::claims::{
     EvaluatedClaim, Evidence, MEANING, claims, claims_json, claims_markdown, evaluate_all_rounded,
 };
 use crate::readings::{
-    DryPoisson, Scan, rounded_evidence, scan, scan_csv, scan_markdown, two_digits_markdown,
+    DryPoisson, ReadingScan, rounded_evidence, scan, scan_csv, scan_markdown, two_digits_markdown,
 };
 use hertzchain_experiment::Reading;
 use hertzchain_sim::commit;
@@ -20,7 +20,7 @@ use std::time::Instant;
 
 /// What to compute, and how well.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct ReproduceOptions {
     /// Relative accuracy asked of the ToFs in the tables.
     pub accuracy: f64,
     /// Seed of the draws within rounding.
@@ -31,15 +31,14 @@ pub struct Options {
     pub readings: usize,
 }
 
-impl Default for Options {
+impl Default for ReproduceOptions {
     fn default() -> Self {
         Self { accuracy: 1e-8, seed: 1, draws: 64, readings: 0 }
     }
 }
 
-impl Options {
+impl ReproduceOptions {
     /// With the scan over readings, and draws enough to see rare flips.
-    #[must_use]
     pub fn with_readings(self) -> Self {
         Self { draws: 200, readings: usize::MAX, ..self }
     }
@@ -68,7 +67,7 @@ pub struct Reproduction {
     /// One dry and one wet shot bead by bead.
     pub films: Vec<Film>,
     /// Which claims hold in which reading, if that was asked for.
-    pub scan: Option<Scan>,
+    pub scan: Option<ReadingScan>,
     /// Where the numbers come from.
     pub provenance: Provenance,
 }
@@ -78,7 +77,7 @@ pub struct Reproduction {
 /// # Errors
 /// The first shot that can't be computed.
 pub fn reproduce(
-    options: &Options,
+    options: &ReproduceOptions,
     progress: &dyn Progress,
 ) -> Result<Reproduction, ReproduceError> {
     let start = Instant::now();
@@ -87,12 +86,12 @@ pub fn reproduce(
     let done = || progress.advance();
     progress.begin("times of flight", (CASES.len() * SPEEDS_M_S.len()) as u64);
     let how = Gathering {
-        reading,
+        cases: &cases,
         speeds_m_s: &SPEEDS_M_S,
         accuracy: options.accuracy,
         effort: Effort::Checked,
     };
-    let evidence = gather(&how, &|_, _, _| {}, &done)?;
+    let evidence = gather(&how, &done)?;
     progress.begin("signals and films", 2);
     let signals = signals(&cases, options.accuracy)?;
     progress.advance();
@@ -107,8 +106,9 @@ pub fn reproduce(
             let mut scan = scan(most, &SPEEDS_M_S, SCAN_ACCURACY, progress)?;
             scan.flipped_by_rounding = flipped(&verdicts);
             let closest = scan.closest().reading;
-            let how = Gathering { reading: closest, accuracy: SCAN_ACCURACY, ..how };
-            let evidence = gather(&how, &|_, _, _| {}, &|| {})?;
+            let cases = &Cases::new(&closest)?;
+            let how = Gathering { cases, accuracy: SCAN_ACCURACY, ..how };
+            let evidence = gather(&how, &|| {})?;
             let rounded = evaluated(options, (&closest, one_digit), &evidence, progress)?;
             scan.flipped_in_closest = flipped(&rounded);
             (Some(two_digits), Some(scan))
@@ -129,7 +129,7 @@ pub fn reproduce(
 
 /// The claims, decided on the tables and under rounding, in a reading.
 fn evaluated(
-    options: &Options,
+    options: &ReproduceOptions,
     (reading, dry_poisson): (&Reading, DryPoisson),
     evidence: &Evidence,
     progress: &dyn Progress,
@@ -150,7 +150,7 @@ fn flipped(evaluated: &[EvaluatedClaim]) -> Vec<usize> {
 }
 
 fn provenance(
-    options: &Options,
+    options: &ReproduceOptions,
     cases: &Cases,
     evidence: &Evidence,
     start: Instant,
@@ -209,7 +209,6 @@ impl Reproduction {
 
     /// The provenance as a file named [`PROVENANCE`](super::PROVENANCE), which lists itself and
     /// the files of those names.
-    #[must_use]
     pub fn provenance_json(&self, files: &[&str]) -> String {
         json(&self.provenance.json(files))
     }

@@ -2,7 +2,7 @@
 
 use super::ReproduceError;
 use super::cases::{CASES, Cases, OILS, SPEEDS_M_S};
-use crate::claims::{Branch, Curve, Evidence, Point};
+use crate::claims::{Branch, Curve, Evidence, ShotPoint};
 use hertzchain_chain::{Chain, Pair};
 use std::fmt::Write as _;
 
@@ -33,7 +33,6 @@ fn curves(evidence: &Evidence) -> impl Iterator<Item = &Curve> {
 }
 
 /// Times of flight and peaks, one row a shot.
-#[must_use]
 pub fn tof_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new(
         "case,speed_m_s,tof_incident_s,tof_reflected_s,sensor_peak_n,wall_peak_n,\
@@ -47,7 +46,7 @@ pub fn tof_csv(evidence: &Evidence) -> String {
     csv.0
 }
 
-fn tof_row(p: &Point) -> [f64; 7] {
+fn tof_row(p: &ShotPoint) -> [f64; 7] {
     [
         p.tof_incident_s,
         p.tof_reflected_s,
@@ -60,7 +59,6 @@ fn tof_row(p: &Point) -> [f64; 7] {
 }
 
 /// Wet over dry times of flight.
-#[must_use]
 pub(super) fn ratios_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new("case,speed_m_s,ratio_incident,ratio_reflected,accuracy_reached");
     for case in OILS {
@@ -75,7 +73,6 @@ pub(super) fn ratios_csv(evidence: &Evidence) -> String {
 /// Fits T = prefactor · v^exponent, one row a case and branch; all speeds
 /// weigh the same. Residuals are relative; in the last column they are in
 /// standard errors of the paper's 20-shot means, from a fit weighted by these.
-#[must_use]
 pub(super) fn power_laws_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new(
         "case,branch,prefactor_s,prefactor_error_s,exponent,exponent_error,r_squared,\
@@ -113,7 +110,6 @@ fn power_law_row(curve: &Curve, branch: Branch) -> Option<[f64; 8]> {
 
 /// The residual of every point from its power law, relative, and the
 /// relative standard error that the paper's 20-shot mean would have.
-#[must_use]
 pub(super) fn power_law_residuals_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new("case,branch,speed_m_s,tof_s,residual,standard_error");
     for curve in curves(evidence) {

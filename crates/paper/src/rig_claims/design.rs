@@ -67,13 +67,11 @@ const PRESSED_M: f64 = 2.4e-3;
 
 impl Factor {
     /// The level of the paper's preset, in SI.
-    #[must_use]
     pub fn usual(&self) -> f64 {
         self.levels[self.usual]
     }
 
     /// A value in SI as it is shown: `friction 0.2`.
-    #[must_use]
     pub fn text(&self, value: f64) -> String {
         format!("{} {}", self.name, self.amount(value))
     }
@@ -87,7 +85,7 @@ impl Factor {
 
 /// One rig: a value in SI for each of [`FACTORS`], and what is on its contacts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rig {
+pub struct TriedRig {
     /// In words.
     pub name: String,
     /// The values.
@@ -96,9 +94,8 @@ pub struct Rig {
     pub case: usize,
 }
 
-impl Rig {
+impl TriedRig {
     /// As the paper's preset.
-    #[must_use]
     pub fn usual() -> Self {
         Self {
             name: "as the preset".to_owned(),
@@ -108,13 +105,11 @@ impl Rig {
     }
 
     /// As the paper's preset, with another of its cases.
-    #[must_use]
     pub fn with_case(case: usize, name: &str) -> Self {
         Self { name: format!("as the preset, {name}"), case, ..Self::usual() }
     }
 
     /// As the preset but for one factor, by its place.
-    #[must_use]
     pub fn but(factor: usize, value: f64) -> Self {
         let mut rig = Self::usual();
         if let (Some(factor), Some(at)) = (FACTORS.get(factor), rig.values.get_mut(factor)) {
@@ -126,7 +121,6 @@ impl Rig {
 
     /// With every factor at its lowest or highest level; the name has them in the
     /// order of [`FACTORS`].
-    #[must_use]
     pub fn corner(high: [bool; 4]) -> Self {
         let value = |at: usize| FACTORS[at].levels[if high[at] { 2 } else { 0 }];
         let values = [0, 1, 2, 3].map(value);
@@ -138,11 +132,11 @@ impl Rig {
 
 /// Rigs, and what each of them does.
 #[derive(Clone, Debug)]
-pub struct Design {
+pub struct RigDesign {
     /// What all rigs have in common: a chain with a push and a `[campaign]`.
     pub experiment: Experiment,
     /// The rigs.
-    pub rigs: Vec<Rig>,
+    pub rigs: Vec<TriedRig>,
     /// How many of the file's speeds, in equal ratios.
     pub speeds: usize,
     /// Shots of a series that count.
@@ -151,29 +145,30 @@ pub struct Design {
     pub first: usize,
 }
 
-impl Design {
+impl RigDesign {
     /// Rigs about that of an experiment, the preset `paper`: itself, one factor at
     /// a time, no push at all, and eight corners (those with an even number of high
     /// levels, so that no effect of one factor is mixed with that of two); all with the
     /// first case, which is dry, and itself with each of the others.
-    #[must_use]
     pub fn about(experiment: Experiment) -> Self {
-        let mut rigs = vec![Rig::usual()];
+        let mut rigs = vec![TriedRig::usual()];
         for (at, factor) in FACTORS.iter().enumerate() {
             let other = factor.levels.iter().filter(|level| **level != factor.usual());
-            rigs.extend(other.map(|level| Rig::but(at, *level)));
+            rigs.extend(other.map(|level| TriedRig::but(at, *level)));
         }
-        rigs.push(Rig::but(PUSH, 0.0));
+        rigs.push(TriedRig::but(PUSH, 0.0));
         let corners = (0..16u32).filter(|bits| bits.count_ones() % 2 == 0);
-        rigs.extend(corners.map(|bits| Rig::corner([0, 1, 2, 3].map(|at| bits >> at & 1 == 1))));
+        rigs.extend(
+            corners.map(|bits| TriedRig::corner([0, 1, 2, 3].map(|at| bits >> at & 1 == 1))),
+        );
         let cases = experiment.cases().into_iter().enumerate().skip(1);
-        rigs.extend(cases.map(|(case, name)| Rig::with_case(case, name)));
+        rigs.extend(cases.map(|(case, name)| TriedRig::with_case(case, name)));
         Self { experiment, rigs, speeds: 20, shots: 8, first: 2 }
     }
 
     /// The experiment of a rig with this many taps; every striker has exactly the
     /// programmed speed, and records are as short as they can be.
-    pub(super) fn experiment(&self, rig: &Rig, taps: usize) -> Result<Experiment, RigError> {
+    pub(super) fn experiment(&self, rig: &TriedRig, taps: usize) -> Result<Experiment, RigError> {
         let factors = FACTORS.iter().map(|factor| factor.path).zip(rig.values);
         let rest = [
             ("near_end.stiffness", rig.values[PUSH] / PRESSED_M),

@@ -5,7 +5,7 @@
 //! drawn with replacement [Efron1979], and the standard deviation over draws
 //! is the standard error.
 
-use super::design::{Design, Rig};
+use super::design::{RigDesign, TriedRig};
 use crate::claims::{Branch, SPEED_SCATTER_M_S};
 use crate::reproduce::Progress;
 use hertzchain_measure::signal::power_law;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 /// Shots of equal speed, with taps before each and without.
 #[derive(Clone, Debug)]
-pub struct AtSpeed {
+pub struct SpeedSeries {
     /// The speed in m/s.
     pub speed_m_s: f64,
     /// Shots without taps.
@@ -27,21 +27,21 @@ pub struct AtSpeed {
 #[derive(Clone, Debug)]
 pub struct Observed {
     /// The rig.
-    pub rig: Rig,
+    pub rig: TriedRig,
     /// Series by speed, slowest first.
-    pub speeds: Vec<AtSpeed>,
+    pub speeds: Vec<SpeedSeries>,
 }
 
 /// All that claims are evaluated on.
 #[derive(Clone, Debug, Default)]
-pub struct Evidence {
+pub struct RigEvidence {
     /// The dry rigs in the design's order: what claims are evaluated on.
     pub rigs: Vec<Observed>,
     /// The others, each of which is evaluated alone.
     pub wet: Vec<Observed>,
 }
 
-impl Evidence {
+impl RigEvidence {
     /// The evidence of each of the rigs alone.
     pub fn alone(&self) -> impl Iterator<Item = Self> + '_ {
         let all = self.rigs.iter().chain(&self.wet);
@@ -90,14 +90,17 @@ pub(crate) fn spread_s(shots: &[Shot], branch: Branch) -> f64 {
 impl Observed {
     /// Series with what the striker's ± 0.003 m/s adds to a time of flight, in
     /// s: |dT/dv| of a power law through the means of tapped shots.
-    pub(crate) fn with_scatter_s(&self, branch: Branch) -> impl Iterator<Item = (&AtSpeed, f64)> {
-        let mean_s = |at: &AtSpeed| mean(&each(&at.tapped, |shot| tof_s(shot, branch)));
+    pub(crate) fn with_scatter_s(
+        &self,
+        branch: Branch,
+    ) -> impl Iterator<Item = (&SpeedSeries, f64)> {
+        let mean_s = |at: &SpeedSeries| mean(&each(&at.tapped, |shot| tof_s(shot, branch)));
         let means_s: Vec<f64> = self.speeds.iter().map(mean_s).collect();
         let speeds: Vec<f64> = self.speeds.iter().map(|at| at.speed_m_s).collect();
         let law = power_law(&speeds, &means_s, None);
         let exponent = law.map_or(f64::NAN, |law| law.exponent);
         let scatter = move |(at, mean_s): (_, f64)| {
-            let at: &AtSpeed = at;
+            let at: &SpeedSeries = at;
             (at, (exponent * mean_s / at.speed_m_s).abs() * SPEED_SCATTER_M_S)
         };
         self.speeds.iter().zip(means_s).map(scatter)
@@ -120,7 +123,7 @@ const SURE: f64 = 1.96;
 
 /// A number with the error that 95 % stay within.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub struct WithError {
     /// The number.
     pub value: f64,
     /// Half of its 95 % interval.
@@ -136,14 +139,16 @@ pub(super) fn deviation(values: &[f64]) -> f64 {
 }
 
 /// Mean of what shots have, with its error.
-pub(super) fn mean_of(values: &[f64]) -> Estimate {
-    Estimate { value: mean(values), error: SURE * deviation(values) / (values.len() as f64).sqrt() }
+pub(super) fn mean_of(values: &[f64]) -> WithError {
+    WithError {
+        value: mean(values),
+        error: SURE * deviation(values) / (values.len() as f64).sqrt(),
+    }
 }
 
 /// ln of the geometric mean of a number that series have, with its error. Series
 /// whose number is none, having no pulses, count for nothing.
-#[must_use]
-pub fn typical(of_series: &[f64]) -> Estimate {
+pub fn typical(of_series: &[f64]) -> WithError {
     let logs = of_series.iter().map(|v| v.ln());
     let logs: Vec<f64> = logs.filter(|log| log.is_finite()).collect();
     bootstrap(&logs, mean)
@@ -151,7 +156,7 @@ pub fn typical(of_series: &[f64]) -> Estimate {
 
 /// ln of the root mean square of a number that series have, with its error, and
 /// not below that of `least`: for numbers that may all be 0.
-pub(crate) fn root_mean_square(of_series: &[f64], least: f64) -> Estimate {
+pub(crate) fn root_mean_square(of_series: &[f64], least: f64) -> WithError {
     bootstrap(of_series, |drawn| {
         let squares: Vec<f64> = drawn.iter().map(|v| v * v).collect();
         mean(&squares).sqrt().max(least).ln()
@@ -159,7 +164,7 @@ pub(crate) fn root_mean_square(of_series: &[f64], least: f64) -> Estimate {
 }
 
 /// One series alone has no error: it is not a number then.
-fn bootstrap(of_series: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Estimate {
+fn bootstrap(of_series: &[f64], statistic: impl Fn(&[f64]) -> f64) -> WithError {
     let mut stream = RandomStream::new(SEED, 0, Purpose::Resampling);
     let mut drawn = || {
         let any = |_| of_series[(stream.uniform() * of_series.len() as f64) as usize];
@@ -167,7 +172,7 @@ fn bootstrap(of_series: &[f64], statistic: impl Fn(&[f64]) -> f64) -> Estimate {
     };
     let draws: Vec<f64> = (0..DRAWS).map(|_| drawn()).collect();
     let alone = of_series.len() < 2;
-    Estimate {
+    WithError {
         value: statistic(of_series),
         error: if alone { f64::NAN } else { SURE * deviation(&draws) },
     }
@@ -182,7 +187,7 @@ type Plans = [Plan; 2];
 ///
 /// # Errors
 /// An experiment that is not a rig's, a shot that can't be computed.
-pub fn observe(design: &Design, progress: &dyn Progress) -> Result<Evidence, RigError> {
+pub fn observe(design: &RigDesign, progress: &dyn Progress) -> Result<RigEvidence, RigError> {
     let plans: Result<Vec<Plans>, RigError> = design
         .rigs
         .iter()
@@ -200,7 +205,7 @@ pub fn observe(design: &Design, progress: &dyn Progress) -> Result<Evidence, Rig
     };
     let due: Vec<(usize, usize)> = plans.iter().enumerate().flat_map(speeds).collect();
     progress.begin("shots on virtual rigs", due.len() as u64);
-    let seen: Result<Vec<(usize, AtSpeed)>, RigError> = due
+    let seen: Result<Vec<(usize, SpeedSeries)>, RigError> = due
         .par_iter()
         .with_max_len(1)
         .map(|(rig, series)| {
@@ -215,12 +220,12 @@ pub fn observe(design: &Design, progress: &dyn Progress) -> Result<Evidence, Rig
         rigs[rig].speeds.push(at);
     }
     let (rigs, wet) = rigs.into_iter().partition(|seen| seen.rig.case == 0);
-    Ok(Evidence { rigs, wet })
+    Ok(RigEvidence { rigs, wet })
 }
 
 /// Both series of a speed.
-fn at_speed([loose, tapped]: &Plans, series: usize, first: usize) -> Result<AtSpeed, RigError> {
-    Ok(AtSpeed {
+fn at_speed([loose, tapped]: &Plans, series: usize, first: usize) -> Result<SpeedSeries, RigError> {
+    Ok(SpeedSeries {
         speed_m_s: loose.series[series].programmed_m_s,
         loose: shots(loose, series, first)?,
         tapped: shots(tapped, series, first)?,

@@ -1,7 +1,7 @@
 //! The paper's statements on its rig, compared with virtual ones.
 //!
 //! The paper does not say how its beads rub, how they are laid, how unlike
-//! they are, nor how its spring presses; so a [`Design`] of rigs is tried. Each runs
+//! they are, nor how its spring presses; so a [`RigDesign`] of rigs is tried. Each runs
 //! campaigns with taps and without, and claims, rows of a data file, are evaluated on all
 //! rigs together and on each alone.
 
@@ -10,8 +10,8 @@ mod evidence;
 mod predicates;
 mod report;
 
-pub use design::{Design, FACTORS, Factor, Rig};
-pub use evidence::{AtSpeed, Estimate, Evidence, Observed, observe, typical};
+pub use design::{FACTORS, Factor, RigDesign, TriedRig};
+pub use evidence::{Observed, RigEvidence, SpeedSeries, WithError, observe, typical};
 pub(crate) use evidence::{mean, rebound_m_s, spread_s};
 pub use report::{MEANING, RigClaims, series_csv};
 
@@ -24,6 +24,6 @@ static PAPER: &str = include_str!("../../data/rig_claims.toml");
 ///
 /// # Errors
 /// When the data file is damaged, which a test rules out.
-pub fn claims() -> Result<Vec<Evaluator<Evidence>>, ClaimError> {
+pub fn claims() -> Result<Vec<Evaluator<RigEvidence>>, ClaimError> {
     read(PAPER, predicates::find)
 }

@@ -1,13 +1,13 @@
 //! Predicates: code that decides a claim on what rigs have shown, by name.
 
 use super::evidence::{
-    AtSpeed, Estimate, Evidence, Observed, deviation, each, largest_m, mean_of, rebound_m_s,
-    root_mean_square, spread_s, tof_s, typical,
+    Observed, RigEvidence, SpeedSeries, WithError, deviation, each, largest_m, mean_of,
+    rebound_m_s, root_mean_square, spread_s, tof_s, typical,
 };
-use crate::claims::{Branch, Claim, Comparisons, Finding, Needs, Predicate};
+use crate::claims::{Branch, Claim, ClaimFinding, Comparisons, Needs, Predicate};
 use hertzchain_sim::rig::Shot;
 
-static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
+static PREDICATES: &[(&str, Predicate<RigEvidence>)] = &[
     ("rebounds-differ", rebounds_differ),
     ("spread-beside-scatter", spread_and_scatter),
     ("taps-shrink-own", taps_shrink_own),
@@ -22,7 +22,7 @@ static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
 ];
 
 /// A predicate by its name.
-pub(super) fn find(name: &str) -> Option<Predicate<Evidence>> {
+pub(super) fn find(name: &str) -> Option<Predicate<RigEvidence>> {
     let row = PREDICATES.iter().find(|(known, _)| *known == name);
     row.map(|(_, predicate)| *predicate)
 }
@@ -31,47 +31,48 @@ pub(super) fn find(name: &str) -> Option<Predicate<Evidence>> {
 const LEAST_M_S: f64 = 1e-9;
 
 /// Strikers that all stay have a spread of 0: hence a root mean square.
-fn rebounds_differ(claim: &Claim, evidence: &Evidence) -> Finding {
-    let spread = |at: &AtSpeed| deviation(&each(&at.loose, rebound_m_s));
+fn rebounds_differ(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
+    let spread = |at: &SpeedSeries| deviation(&each(&at.loose, rebound_m_s));
     a_rig_each(claim, evidence, |observed| {
         let of_series: Vec<f64> = within(claim, observed).map(spread).collect();
         root_mean_square(&of_series, LEAST_M_S)
     })
 }
 
-fn spread_and_scatter(claim: &Claim, evidence: &Evidence) -> Finding {
+fn spread_and_scatter(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
         let series = observed.with_scatter_s(Branch::Incident);
-        let ratio = |(at, scatter_s): (&AtSpeed, f64)| incident_s(&at.loose) / scatter_s;
+        let ratio = |(at, scatter_s): (&SpeedSeries, f64)| incident_s(&at.loose) / scatter_s;
         typical(&series.map(ratio).collect::<Vec<f64>>())
     })
 }
 
-fn taps_shrink_own(claim: &Claim, evidence: &Evidence) -> Finding {
+fn taps_shrink_own(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
-        let ratio = |at: &AtSpeed| incident_s(&at.loose) / incident_s(&at.tapped);
+        let ratio = |at: &SpeedSeries| incident_s(&at.loose) / incident_s(&at.tapped);
         typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
     })
 }
 
-fn taps_shrink_seen(claim: &Claim, evidence: &Evidence) -> Finding {
+fn taps_shrink_seen(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
         let series = observed.with_scatter_s(Branch::Incident);
-        let ratio = |(at, scatter_s): (&AtSpeed, f64)| {
+        let ratio = |(at, scatter_s): (&SpeedSeries, f64)| {
             incident_s(&at.loose).hypot(scatter_s) / incident_s(&at.tapped).hypot(scatter_s)
         };
         typical(&series.map(ratio).collect::<Vec<f64>>())
     })
 }
 
-fn return_spreads_own(claim: &Claim, evidence: &Evidence) -> Finding {
+fn return_spreads_own(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
-        let ratio = |at: &AtSpeed| spread_s(&at.tapped, Branch::Reflected) / incident_s(&at.tapped);
+        let ratio =
+            |at: &SpeedSeries| spread_s(&at.tapped, Branch::Reflected) / incident_s(&at.tapped);
         typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
     })
 }
 
-fn return_spreads_seen(claim: &Claim, evidence: &Evidence) -> Finding {
+fn return_spreads_seen(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
         let [incident, reflected] = Branch::BOTH.map(|branch| {
             let series = observed.with_scatter_s(branch);
@@ -86,34 +87,34 @@ fn incident_s(shots: &[Shot]) -> f64 {
     spread_s(shots, Branch::Incident)
 }
 
-fn return_longer(claim: &Claim, evidence: &Evidence) -> Finding {
+fn return_longer(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_series_each(claim, evidence, |at| {
         let [incident, reflected] =
             Branch::BOTH.map(|branch| mean_of(&each(&at.tapped, |shot| tof_s(shot, branch))));
         let value = reflected.value / incident.value;
         let relative = incident.error / incident.value + reflected.error / reflected.value;
-        Estimate { value, error: value * relative }
+        WithError { value, error: value * relative }
     })
 }
 
-fn gaps_left(claim: &Claim, evidence: &Evidence) -> Finding {
+fn gaps_left(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     let gap_m = |shot: &Shot| largest_m(&shot.gaps_after_m);
     a_series_each(claim, evidence, |at| mean_of(&each(&at.tapped, gap_m)))
 }
 
-fn gaps_closed(claim: &Claim, evidence: &Evidence) -> Finding {
+fn gaps_closed(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     let gap_m = |shot: &Shot| largest_m(&shot.gaps_before_m);
     a_series_each(claim, evidence, |at| mean_of(&each(&at.tapped, gap_m)))
 }
 
-fn rebound(claim: &Claim, evidence: &Evidence) -> Finding {
+fn rebound(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     // Not a negation: a striker that stays has 0, not −0.
     let away_m_s = |shot: &Shot| 0.0 - rebound_m_s(shot);
     a_series_each(claim, evidence, |at| mean_of(&each(&at.tapped, away_m_s)))
 }
 
 /// The series of a claim's speeds.
-fn within<'a>(claim: &Claim, observed: &'a Observed) -> impl Iterator<Item = &'a AtSpeed> {
+fn within<'a>(claim: &Claim, observed: &'a Observed) -> impl Iterator<Item = &'a SpeedSeries> {
     let speeds = claim.from_m_s..=claim.to_m_s;
     let series = observed.speeds.iter();
     series.filter(move |at| speeds.contains(&at.speed_m_s))
@@ -122,9 +123,9 @@ fn within<'a>(claim: &Claim, observed: &'a Observed) -> impl Iterator<Item = &'a
 /// One comparison a rig, of the logarithm of what its series have together.
 fn a_rig_each(
     claim: &Claim,
-    evidence: &Evidence,
-    log_of: impl Fn(&Observed) -> Estimate,
-) -> Finding {
+    evidence: &RigEvidence,
+    log_of: impl Fn(&Observed) -> WithError,
+) -> ClaimFinding {
     let mut comparisons = Comparisons::default();
     for observed in &evidence.rigs {
         let log = log_of(observed);
@@ -138,9 +139,9 @@ fn a_rig_each(
 /// One comparison a series.
 fn a_series_each(
     claim: &Claim,
-    evidence: &Evidence,
-    of_series: impl Fn(&AtSpeed) -> Estimate,
-) -> Finding {
+    evidence: &RigEvidence,
+    of_series: impl Fn(&SpeedSeries) -> WithError,
+) -> ClaimFinding {
     let most = claim.at_most.unwrap_or(f64::INFINITY);
     let side = match claim.needs {
         Needs::Below => -1.0,
@@ -149,7 +150,7 @@ fn a_series_each(
     let mut comparisons = Comparisons::default();
     for observed in &evidence.rigs {
         for at in within(claim, observed) {
-            let Estimate { value, error } = of_series(at);
+            let WithError { value, error } = of_series(at);
             let margin = (side * (value - claim.threshold)).min(most - value);
             comparisons.add(margin, value, error, || {
                 format!("{}, {:.3} m/s", observed.rig.name, at.speed_m_s)

@@ -1,9 +1,9 @@
 //! Verdicts on the rig's claims as JSON, Markdown and CSV.
 
 use super::claims;
-use super::design::{Design, FACTORS, Rig};
+use super::design::{FACTORS, RigDesign, TriedRig};
 use super::evidence::{
-    AtSpeed, Evidence, Observed, deviation, each, largest_m, mean, rebound_m_s, tof_s,
+    Observed, RigEvidence, SpeedSeries, deviation, each, largest_m, mean, rebound_m_s, tof_s,
 };
 use crate::claims::{
     Branch, ClaimError, EvaluatedClaim, claims_json, claims_markdown, computed_text, evaluate_all,
@@ -22,7 +22,7 @@ pub struct RigClaims {
     /// On all dry rigs together.
     pub evaluated: Vec<EvaluatedClaim>,
     /// On each alone.
-    pub rigs: Vec<(Rig, Vec<EvaluatedClaim>)>,
+    pub rigs: Vec<(TriedRig, Vec<EvaluatedClaim>)>,
     /// What the rigs did, in words.
     about: String,
 }
@@ -32,7 +32,7 @@ impl RigClaims {
     ///
     /// # Errors
     /// When the claims' data file is damaged, which a test rules out.
-    pub fn evaluate(design: &Design, evidence: &Evidence) -> Result<Self, ClaimError> {
+    pub fn evaluate(design: &RigDesign, evidence: &RigEvidence) -> Result<Self, ClaimError> {
         let evaluators = claims()?;
         let alone = evidence.alone().flat_map(|alone| {
             let evaluated = evaluate_all(&evaluators, &alone);
@@ -47,7 +47,6 @@ impl RigClaims {
     }
 
     /// As a page for people.
-    #[must_use]
     pub fn markdown(&self) -> String {
         let head = format!(
             "# What the paper says of its rig, and what virtual ones show\n\n{}\n\n{MEANING}",
@@ -70,7 +69,6 @@ impl RigClaims {
     }
 
     /// As JSON.
-    #[must_use]
     pub fn json(&self) -> Value {
         let rigs = self.rigs.iter().map(|(rig, evaluated)| {
             let values = FACTORS.iter().zip(rig.values);
@@ -87,9 +85,9 @@ impl RigClaims {
     }
 }
 
-fn about(design: &Design, evidence: &Evidence) -> String {
+fn about(design: &RigDesign, evidence: &RigEvidence) -> String {
     let speeds = evidence.rigs.first().map_or(&[][..], |rig| &rig.speeds);
-    let end = |at: Option<&AtSpeed>| at.map_or(f64::NAN, |at| at.speed_m_s);
+    let end = |at: Option<&SpeedSeries>| at.map_or(f64::NAN, |at| at.speed_m_s);
     format!(
         "Computed on {} virtual rigs: {}, then others in what the paper does not state, friction with the track, push on \
          bead 1, gaps as the chain is laid and unlike radii, in this order where a name has all four. Chains are dry; {} more, as the preset with oil, are evaluated one by one and count in no verdict on all. On each, series at {} speeds from {:.3} to {:.3} m/s, once \
@@ -120,8 +118,7 @@ const HEADER: &str = "rig,friction,push_n,gap_scatter_m,radius_spread,taps,speed
 /// Means and standard deviations of every series as CSV. Gaps are means of the
 /// sum and of the largest. The standard error of a standard deviation s of n normal
 /// shots is s/√(2(n − 1)).
-#[must_use]
-pub fn series_csv(evidence: &Evidence) -> String {
+pub fn series_csv(evidence: &RigEvidence) -> String {
     let mut csv = format!("{HEADER}\n");
     for Observed { rig, speeds } in evidence.rigs.iter().chain(&evidence.wet) {
         for at in speeds {

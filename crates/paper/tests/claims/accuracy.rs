@@ -3,7 +3,7 @@
 use crate::agreeing::agreeing;
 use crate::breaks::{BREAKS, each};
 use crate::{decide, dry};
-use hertzchain_paper::claims::{Evidence, Point, Verdict, claims};
+use hertzchain_paper::claims::{Evidence, ShotPoint, Verdict, claims};
 
 /// The numbers as made up and after every change that breaks a claim.
 fn all_evidence() -> Vec<Evidence> {
@@ -77,7 +77,7 @@ impl Signs {
     }
 
     /// Moves every number of a shot by its accuracy, up or down.
-    fn shake(&mut self, p: &mut Point) {
+    fn shake(&mut self, p: &mut ShotPoint) {
         for tof in [&mut p.tof_incident_s, &mut p.tof_reflected_s] {
             *tof *= 1.0 + self.next() * p.accuracy_reached;
         }

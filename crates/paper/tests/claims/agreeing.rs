@@ -1,13 +1,15 @@
 //! Numbers made up so that everything the paper says is true.
 
-use hertzchain_paper::claims::{Branch, Curve, Digitised, Evidence, Measured, Oil, Point};
+use hertzchain_paper::claims::{
+    Branch, Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint,
+};
 
 /// Speeds in m/s.
 const SPEEDS_M_S: [f64; 12] =
     [0.075, 0.1, 0.1396, 0.2, 0.28, 0.3993, 0.5, 0.6, 0.75, 1.0, 1.152, 1.23];
 
-fn point(speed_m_s: f64, incident_s: f64, reflected_s: f64) -> Point {
-    Point {
+fn point(speed_m_s: f64, incident_s: f64, reflected_s: f64) -> ShotPoint {
+    ShotPoint {
         speed_m_s,
         tof_incident_s: incident_s,
         tof_reflected_s: reflected_s,
@@ -58,11 +60,11 @@ fn wet(case: &str, level: f64, lifted_m_s: f64) -> Curve {
     wet
 }
 
-fn oil(case: &str, kinematic_viscosity_m2_s: f64, density_kg_m3: f64) -> Oil {
-    Oil { case: case.to_owned(), kinematic_viscosity_m2_s, density_kg_m3 }
+fn oil(case: &str, kinematic_viscosity_m2_s: f64, density_kg_m3: f64) -> PrintedOil {
+    PrintedOil { case: case.to_owned(), kinematic_viscosity_m2_s, density_kg_m3 }
 }
 
-fn measured(what: Measured, case: &str, value: f64, standard_error: f64) -> Digitised {
+fn measured(what: MeasuredKind, case: &str, value: f64, standard_error: f64) -> Digitised {
     Digitised { what, case: case.to_owned(), speed_m_s: 0.1, value, standard_error }
 }
 
@@ -85,10 +87,10 @@ pub fn agreeing() -> Evidence {
         ],
         viscosity_over_modulus_s: 1.5e-7,
         digitised: vec![
-            measured(Measured::SensorOverWall, "dry", sensor_over_wall, 0.01),
-            measured(Measured::Tof(Branch::Incident), "dry", dry(0.1).0, 1e-6),
-            measured(Measured::Tof(Branch::Reflected), "dry", dry(0.1).1 + 5e-7, 1e-6),
-            measured(Measured::Ratio, "gear", 0.97 * (0.1_f64 / 1.1).powf(0.004), 1e-3),
+            measured(MeasuredKind::SensorOverWall, "dry", sensor_over_wall, 0.01),
+            measured(MeasuredKind::Tof(Branch::Incident), "dry", dry(0.1).0, 1e-6),
+            measured(MeasuredKind::Tof(Branch::Reflected), "dry", dry(0.1).1 + 5e-7, 1e-6),
+            measured(MeasuredKind::Ratio, "gear", 0.97 * (0.1_f64 / 1.1).powf(0.004), 1e-3),
         ],
     }
 }

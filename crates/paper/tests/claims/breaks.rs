@@ -1,64 +1,64 @@
 //! Changes of the numbers that claims must not survive.
 
 use crate::agreeing::dry;
-use hertzchain_paper::claims::{Evidence, Point};
+use hertzchain_paper::claims::{Evidence, ShotPoint};
 
 /// Changes all points of a case.
-pub fn each(evidence: &mut Evidence, case: &str, change: impl Fn(&mut Point)) {
+pub fn each(evidence: &mut Evidence, case: &str, change: impl Fn(&mut ShotPoint)) {
     let curve = evidence.curves.iter_mut().find(|curve| curve.case == case).unwrap();
     curve.points.iter_mut().for_each(change);
 }
 
 /// Closing the gaps changes the way back by this share of what it takes longer.
-fn closed(share: f64) -> impl Fn(&mut Point) {
+fn closed(share: f64) -> impl Fn(&mut ShotPoint) {
     move |p| p.excess_s[1] = (1.0 - share) * p.excess_s[0]
 }
 
 /// Bends both ToFs in log–log.
-fn bend(p: &mut Point) {
+fn bend(p: &mut ShotPoint) {
     let factor = 1.0 + 0.2 * p.speed_m_s.ln().powi(2);
     p.tof_incident_s *= factor;
     p.tof_reflected_s *= factor;
 }
 
 /// Bends both by less than a figure shows and more than 20 shots leave open.
-fn bend_slightly(p: &mut Point) {
+fn bend_slightly(p: &mut ShotPoint) {
     let factor = 1.0 + 0.005 * p.speed_m_s.ln().powi(2);
     p.tof_incident_s *= factor;
     p.tof_reflected_s *= factor;
 }
 
-fn lengthen(p: &mut Point) {
+fn lengthen(p: &mut ShotPoint) {
     p.tof_incident_s *= 1.2;
 }
 
-fn shorten(p: &mut Point) {
+fn shorten(p: &mut ShotPoint) {
     p.tof_incident_s /= 1.2;
 }
 
-fn falling_ratio(p: &mut Point) {
+fn falling_ratio(p: &mut ShotPoint) {
     p.tof_incident_s *= p.speed_m_s.powf(-0.05);
 }
 
-fn only_rising_ratio(p: &mut Point) {
+fn only_rising_ratio(p: &mut ShotPoint) {
     p.tof_incident_s = 0.99 * dry(p.speed_m_s).0 * p.speed_m_s.powf(0.01);
 }
 
 /// A ratio that falls over most speeds and yet ends above where it began.
-fn rising_once(p: &mut Point) {
+fn rising_once(p: &mut ShotPoint) {
     let rise = if p.speed_m_s > 1.2 { 1.2 } else { 1.0 };
     p.tof_incident_s = 0.99 * rise * dry(p.speed_m_s).0 * p.speed_m_s.powf(-0.05);
 }
 
 /// A ratio that rises over all speeds but the last.
-fn lower_at_the_end(p: &mut Point) {
+fn lower_at_the_end(p: &mut ShotPoint) {
     if p.speed_m_s > 1.2 {
         p.tof_incident_s /= 1.2;
     }
 }
 
 /// A ratio that passes 1 upward, downward and upward again.
-fn back_and_forth(p: &mut Point) {
+fn back_and_forth(p: &mut ShotPoint) {
     if (0.2..0.5).contains(&p.speed_m_s) {
         p.tof_incident_s *= 1.2;
     }

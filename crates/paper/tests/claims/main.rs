@@ -9,7 +9,7 @@ mod breaks;
 use agreeing::{agreeing, dry};
 use breaks::{BREAKS, each};
 use hertzchain_paper::claims::{
-    Claim, EvaluatedClaim, Evaluator, Evidence, Finding, MEANING, Needs, Verdict, claims,
+    Claim, ClaimFinding, EvaluatedClaim, Evaluator, Evidence, MEANING, Needs, Verdict, claims,
     claims_markdown, evaluate_all, evaluate_all_rounded, predicate, read,
 };
 
@@ -18,7 +18,7 @@ fn evaluator(id: &str) -> Evaluator {
     all.into_iter().find(|evaluator| evaluator.claim.id == id).unwrap()
 }
 
-fn decide(id: &str, evidence: &Evidence) -> Finding {
+fn decide(id: &str, evidence: &Evidence) -> ClaimFinding {
     evaluator(id).decide(evidence)
 }
 
@@ -45,7 +45,7 @@ fn every_verdict_flips_when_its_numbers_change() {
 }
 
 /// Whether a finding's number lies where the claim says that it must.
-fn on_the_right_side(claim: &Claim, finding: &Finding) -> bool {
+fn on_the_right_side(claim: &Claim, finding: &ClaimFinding) -> bool {
     match claim.needs {
         Needs::Above => finding.value > claim.threshold,
         Needs::Below => finding.value < claim.threshold,

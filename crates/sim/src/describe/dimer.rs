@@ -74,9 +74,9 @@ struct Row {
 }
 
 impl Row {
-    fn wave(&self) -> Wave {
+    fn wave(&self) -> DimerWave {
         let [one, other] = self.masses_kg;
-        Wave::new(self.exponent, (other - one) / (one + other))
+        DimerWave::new(self.exponent, (other - one) / (one + other))
     }
 
     fn overlap_m(&self, force_n: f64) -> f64 {
@@ -103,7 +103,7 @@ impl Row {
 /// overlaps of its static overlap, and `squared` is m̄ V² in these. The wave's
 /// equation is linear in S′²:
 /// β d(S′²)/dS = 2 (squared δ − S) + squared (r²/4) δ″(S) S′².
-struct Wave {
+struct DimerWave {
     exponent: f64,
     squared: f64,
     spread: f64,
@@ -111,7 +111,7 @@ struct Wave {
     weight: f64,
 }
 
-impl Wave {
+impl DimerWave {
     /// The speed with which the slope is 0 again at the peak force.
     fn new(exponent: f64, ratio: f64) -> Self {
         let at = |squared: f64| {

@@ -158,7 +158,6 @@ fn drop_unit(row: &mut Row) {
 
 /// What is left of a unit where lengths, masses and times have none: things
 /// that are counted, and angles.
-#[must_use]
 pub fn dimensionless_unit(unit: &str) -> &str {
     match unit {
         "beads" | "bits" | "°" => unit,

@@ -59,7 +59,7 @@ pub fn campaign(
     shard: Shard,
     watch: &(dyn Fn(Progress) + Sync),
 ) -> Result<Done, RigError> {
-    let folder = Folder::open(out, plan)?;
+    let folder = CampaignFolder::open(out, plan)?;
     folder.clear(plan);
     let dealt = plan.series.iter().enumerate();
     let part: Vec<&Series> =
@@ -123,8 +123,8 @@ pub struct Merged {
 /// [`RigError::Missing`] with the series that no folder has; a folder of another campaign;
 /// recordings that are damaged or another's; what the system refuses.
 pub fn merge(plan: &Plan, folders: &[&Path], out: &Path) -> Result<Merged, RigError> {
-    let folders = folders.iter().map(|path| Folder::existing(path, plan));
-    let folders: Vec<Folder> = folders.collect::<Result<_, _>>()?;
+    let folders = folders.iter().map(|path| CampaignFolder::existing(path, plan));
+    let folders: Vec<CampaignFolder> = folders.collect::<Result<_, _>>()?;
     let inputs = fingerprint(plan).short();
     let (mut found, mut missing) = (Vec::new(), Vec::new());
     for series in &plan.series {
@@ -140,7 +140,7 @@ pub fn merge(plan: &Plan, folders: &[&Path], out: &Path) -> Result<Merged, RigEr
         let of = plan.series.len();
         return Err(RigError::Missing { of, missing });
     }
-    let whole = Folder::open(out, plan)?;
+    let whole = CampaignFolder::open(out, plan)?;
     let (mut copied, mut bytes) = (0, 0);
     for (series, file) in &found {
         let place = whole.file(series);
@@ -159,7 +159,7 @@ pub fn merge(plan: &Plan, folders: &[&Path], out: &Path) -> Result<Merged, RigEr
 }
 
 /// The one recording of a series: where several folders have it, it is the same.
-fn only(folders: &[Folder], series: &Series) -> Result<Option<PathBuf>, RigError> {
+fn only(folders: &[CampaignFolder], series: &Series) -> Result<Option<PathBuf>, RigError> {
     let mut files = folders.iter().map(|folder| folder.file(series)).filter(|file| file.is_file());
     let first = files.next();
     if let Some(first) = &first {
@@ -187,7 +187,7 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub const CAMPAIGN_FILE: &str = "campaign.toml";
 
 /// A folder for the recordings of one campaign.
-struct Folder {
+struct CampaignFolder {
     path: PathBuf,
 }
 
@@ -197,7 +197,7 @@ fn fingerprint(plan: &Plan) -> Fingerprint {
     inputs.text("experiment", &plan.experiment.canonical_text()).fingerprint()
 }
 
-impl Folder {
+impl CampaignFolder {
     /// Makes the folder if need be, and writes into it which campaign it is for.
     fn open(path: &Path, plan: &Plan) -> Result<Self, RigError> {
         fs::create_dir_all(path).map_err(|error| RigError::folder(path, error))?;

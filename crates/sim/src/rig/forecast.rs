@@ -41,7 +41,7 @@ pub fn forecast(plan: &Plan) -> Result<Vec<String>, RigError> {
         let slowest = speeds_m_s.iter().copied().reduce(f64::min);
         let fastest = speeds_m_s.iter().copied().reduce(f64::max);
         for (speed_m_s, passage) in passages(case, slowest.into_iter().chain(fastest).collect()) {
-            let seen = Seen {
+            let seen = SeenPulses {
                 what: format!("case `{}` at {speed_m_s:.4} m/s", case.name),
                 speed_m_s,
                 passage,
@@ -73,13 +73,13 @@ fn passages(case: &Case, mut speeds_m_s: Vec<f64>) -> Vec<(f64, Passage)> {
 }
 
 /// A shot of the model.
-struct Seen {
+struct SeenPulses {
     what: String,
     speed_m_s: f64,
     passage: Passage,
 }
 
-impl Seen {
+impl SeenPulses {
     fn rate(&self, plan: &Plan) -> Result<Option<String>, RigError> {
         let sampling_hz = recorder(plan).sampling_hz;
         let widths_s = [self.passage.incident_width_s, self.passage.wall_width_s];

@@ -49,7 +49,7 @@ impl RandomStream {
     }
 
     /// Draws from the exponential distribution with mean 1.
-    pub fn exponential(&mut self) -> f64 {
+    pub(crate) fn exponential(&mut self) -> f64 {
         Exp1.sample(&mut self.0)
     }
 
@@ -168,7 +168,7 @@ const MANY: usize = 5;
 /// low-pass, a product of [factors](LowPassFactor) of first and second order.
 #[derive(Clone, Copy, Debug)]
 pub struct Amplifier {
-    filter: Filter,
+    filter: AmplifierFilter,
     sensor_v_n: f64,
     wall_v_n: f64,
     input_v: f64,
@@ -177,7 +177,7 @@ pub struct Amplifier {
 /// The filters with their states: what the high-pass has followed, then each factor's output
 /// and, of one of second order, its rate over ω.
 #[derive(Clone, Copy, Debug)]
-enum Filter {
+enum AmplifierFilter {
     Short(FirstOrderHold<FEW>, [f64; FEW]),
     // With the number of the last factor's output.
     Long(FirstOrderHold<MANY>, [f64; MANY], usize),
@@ -189,11 +189,11 @@ impl Amplifier {
         let filter = match settings.factors() {
             [_] => {
                 let (a, b, _) = system(settings);
-                Filter::Short(FirstOrderHold::new(&a, &b, interval_s), [0.0; FEW])
+                AmplifierFilter::Short(FirstOrderHold::new(&a, &b, interval_s), [0.0; FEW])
             }
             _ => {
                 let (a, b, output) = system(settings);
-                Filter::Long(FirstOrderHold::new(&a, &b, interval_s), [0.0; MANY], output)
+                AmplifierFilter::Long(FirstOrderHold::new(&a, &b, interval_s), [0.0; MANY], output)
             }
         };
         Self {
@@ -210,11 +210,11 @@ impl Amplifier {
         let input_v = self.sensor_v_n * sensor_n + self.wall_v_n * wall_n;
         let before_v = std::mem::replace(&mut self.input_v, input_v);
         match &mut self.filter {
-            Filter::Short(hold, state) => {
+            AmplifierFilter::Short(hold, state) => {
                 *state = hold.step(state, before_v, input_v);
                 state[1]
             }
-            Filter::Long(hold, state, output) => {
+            AmplifierFilter::Long(hold, state, output) => {
                 *state = hold.step(state, before_v, input_v);
                 state[*output]
             }

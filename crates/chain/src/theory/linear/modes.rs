@@ -79,12 +79,12 @@ fn check(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Result<(), Chain
 }
 
 /// A column of the strain matrix and the combination of beads it stands for.
-struct Column {
+struct ModeColumn {
     strain: Vec<f64>,
     weight: Vec<f64>,
 }
 
-fn strain_columns(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Vec<Column> {
+fn strain_columns(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Vec<ModeColumn> {
     let beads = masses_kg.len();
     // Contact on the near side of bead 0; the far contact is the next one.
     let first_is_stop = matches!(ends, Ends::FixedFree | Ends::FixedFixed);
@@ -107,12 +107,12 @@ fn strain_columns(masses_kg: &[f64], stiffnesses: &[f64], ends: Ends) -> Vec<Col
             add(contact, -1.0);
         }
         let weight = (0..beads).map(|other| f64::from(u8::from(other == bead))).collect();
-        Column { strain, weight }
+        ModeColumn { strain, weight }
     };
     masses_kg.iter().enumerate().map(column).collect()
 }
 
-fn orthogonalise(columns: &mut [Column]) -> Result<(), ChainError> {
+fn orthogonalise(columns: &mut [ModeColumn]) -> Result<(), ChainError> {
     let mut largest = f64::INFINITY;
     for _ in 0..MOST_SWEEPS {
         largest = sweep(columns);
@@ -124,7 +124,7 @@ fn orthogonalise(columns: &mut [Column]) -> Result<(), ChainError> {
 }
 
 /// Turns every pair of columns once; gives the largest cosine that was worth a turn.
-fn sweep(columns: &mut [Column]) -> f64 {
+fn sweep(columns: &mut [ModeColumn]) -> f64 {
     let floor = rounding_floor(columns);
     let mut largest: f64 = 0.0;
     for second in 1..columns.len() {
@@ -138,14 +138,14 @@ fn sweep(columns: &mut [Column]) -> f64 {
 }
 
 /// Squared length below which a column is a rounded zero (a free shift).
-fn rounding_floor(columns: &[Column]) -> f64 {
+fn rounding_floor(columns: &[ModeColumn]) -> f64 {
     let longest = columns.iter().map(|c| dot(&c.strain, &c.strain)).fold(0.0, f64::max);
     longest * (f64::EPSILON * columns.len() as f64).powi(2)
 }
 
 /// Rotates two columns until they are orthogonal; gives |cos| of their angle
 /// before, or 0 if that was rounding.
-fn turn(a: &mut Column, b: &mut Column, floor: f64) -> f64 {
+fn turn(a: &mut ModeColumn, b: &mut ModeColumn, floor: f64) -> f64 {
     let (aa, bb) = (dot(&a.strain, &a.strain), dot(&b.strain, &b.strain));
     let ab = dot(&a.strain, &b.strain);
     let cosine = ab.abs() / (aa * bb).sqrt();
@@ -183,7 +183,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest.map(|(x, y)| x * y).sum::<f64>()
 }
 
-fn mode(column: &Column, masses_kg: &[f64]) -> Mode {
+fn mode(column: &ModeColumn, masses_kg: &[f64]) -> Mode {
     let entries = || column.weight.iter().zip(masses_kg);
     let first = column.weight.iter().find(|y| y.abs() > 1e-8);
     let sign = first.map_or(1.0, |y| y.signum());

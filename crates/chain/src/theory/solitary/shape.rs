@@ -52,11 +52,6 @@ impl SolitaryShape {
         self.exponent
     }
 
-    /// Half the width of the window in which the shape is not zero to rounding, in beads.
-    pub fn half_window_beads(&self) -> f64 {
-        self.solved.half_window
-    }
-
     /// σ = m c² / (k δ_mⁿ⁻¹): squared speed in units of the peak overlap.
     pub fn speed_squared(&self) -> f64 {
         self.solved.speed_squared
@@ -88,7 +83,7 @@ impl SolitaryShape {
     }
 
     /// Momentum P / (m c δ_m) = ∫ p dx: also how far the passing wave shifts each bead, in units of δ_m.
-    pub fn momentum(&self) -> f64 {
+    pub(crate) fn momentum(&self) -> f64 {
         self.solved.force_area / self.solved.speed_squared
     }
 

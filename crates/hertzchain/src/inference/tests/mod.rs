@@ -26,20 +26,24 @@ fn a_number_that_use_names_and_the_table_has_not_is_told() {
 }
 
 #[test]
-fn a_short_name_that_is_set_is_told_with_its_path() {
-    for (name, words) in [
-        ("B", "write --set contacts[0].laws.damping_cubic.coefficient=VALUE"),
-        ("eta", "write --set materials.aisi316.shear_viscosity=VALUE"),
-        ("wall_gain", "--free alone knows it"),
-        ("nothing", "there is no number `nothing`"),
-    ] {
-        let set = format!("--set={name}=50");
-        let modelled = fit(&[&set]).modelled;
-        let Err(Failure::User(why)) = experiment(&modelled, None) else {
-            unreachable!("{name} was set")
-        };
-        assert!(why.starts_with(&format!("--set {name}: ")) && why.contains(words), "{why}");
+fn numbers_are_set_by_short_names_too_and_mistakes_stand_on_the_command_line() {
+    let set = |words: &str| experiment(&fit(&[&format!("--set={words}")]).modelled, None);
+    let cubic = "contacts[0].laws.damping_cubic.coefficient";
+    for name in ["B", "damping_cubic.coefficient"] {
+        let changed = set(&format!("{name}=50 kg s/m^2")).unwrap();
+        assert_eq!(changed.get(cubic).unwrap(), 50.0);
     }
-    let path = ["--set=damping_cubic.coefficient=50 kg s/m^2"];
-    assert!(experiment(&fit(&path).modelled, None).is_ok());
+    let wet = ["data.csv", "--preset=motor", "--free=B", "--set=wet.eta=5e4 Pa s"];
+    let wet = arguments::<Fit>("fit", &wet.map(str::to_owned)).unwrap();
+    let wet = experiment(&wet.modelled, None).unwrap();
+    let law = |part: &str| wet.get(&format!("motor-oil.shear_viscosity.{part}")).unwrap();
+    assert_eq!((law("prefactor"), law("exponent")), (5e4, 0.0));
+    for (words, expected) in [
+        ("B=50", "has no unit; expected a cubic damping"),
+        ("wall_gain=50", "--free alone knows it"),
+        ("nothing=50", "there is no number `nothing`"),
+    ] {
+        let Err(Failure::User(why)) = set(words) else { unreachable!("{words} was set") };
+        assert!(why.starts_with(&format!("--set {words}: ")) && why.contains(expected), "{why}");
+    }
 }

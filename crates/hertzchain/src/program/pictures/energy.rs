@@ -9,7 +9,7 @@ use hertzchain_figures::{Chart, Colour, Dash, Figure, Series};
 const LEAST_SEEN: f64 = 2e-3;
 
 /// One curve of the figure.
-struct Part {
+struct EnergyPart {
     name: &'static str,
     of: fn(&Budget) -> f64,
     look: (Colour, Dash),
@@ -22,12 +22,12 @@ const fn part(
     of: fn(&Budget) -> f64,
     look: (Colour, Dash),
     always: bool,
-) -> Part {
-    Part { name, of, look, always }
+) -> EnergyPart {
+    EnergyPart { name, of, look, always }
 }
 
 /// No two parts have the same colour; those that most shots show differ by dash too.
-const PARTS: [Part; 8] = [
+const PARTS: [EnergyPart; 8] = [
     part("kinetic", |b| b.kinetic_j, (Colour::BLUE, Dash::Solid), true),
     part("elastic", |b| b.elastic_j, (Colour::VERMILION, Dash::Dashed), true),
     part("lost", dissipated_j, (Colour::GREEN, Dash::DashDotted), false),
@@ -52,7 +52,7 @@ pub(crate) fn energy(budgets: &[Budget], units: Units) -> Figure {
     let largest = PARTS.iter().map(|part| peak(&values(part.of)));
     let largest = largest.fold(0.0, f64::max);
     let (factor, label) = scale(largest, units);
-    let seen = |part: &&Part| part.always || peak(&values(part.of)) > LEAST_SEEN * largest;
+    let seen = |part: &&EnergyPart| part.always || peak(&values(part.of)) > LEAST_SEEN * largest;
     let chart = Chart::new(&clock.label("Time"), &label);
     let chart = PARTS.iter().filter(seen).fold(chart, |chart, part| {
         let scaled: Vec<f64> = values(part.of).iter().map(|e| e * factor).collect();

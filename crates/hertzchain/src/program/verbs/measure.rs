@@ -38,19 +38,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Drawn on a terminal only.
-struct Bar(ProgressBar);
+struct FileBar(ProgressBar);
 
-impl Watch for Bar {
+impl Watch for FileBar {
     fn seen(&self) {
         self.0.inc(1);
     }
 }
 
-fn bar() -> Bar {
+fn bar() -> FileBar {
     let bar = ProgressBar::no_length();
     let style = ProgressStyle::with_template("{spinner} {pos} records, {per_sec}");
     style.into_iter().for_each(|style| bar.set_style(style));
-    Bar(bar)
+    FileBar(bar)
 }
 
 /// Most lines about the table of shots, which may be of other recordings.

@@ -180,13 +180,11 @@ impl Surrogate {
     }
 
     /// Whether it may stand for the model.
-    #[must_use]
     pub fn is_right(&self) -> bool {
         self.error <= Self::ALLOWED
     }
 
     /// Speeds in m/s whose times are computed at every point, as the model jumps there.
-    #[must_use]
     pub fn computed_speeds_m_s(&self) -> Vec<f64> {
         let speeds = self.problem.all_speeds_m_s();
         self.rough.iter().map(|at| speeds[*at]).collect()

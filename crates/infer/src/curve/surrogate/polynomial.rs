@@ -32,7 +32,7 @@ pub(super) struct Polynomial {
     /// Middle and half width of the independent numbers at the points fitted.
     ranges: Vec<(f64, f64)>,
     degree: usize,
-    terms: Vec<Term>,
+    terms: Vec<PolynomialTerm>,
     /// Speeds of a curve.
     speeds: usize,
     /// Speed and observable of each predicted number.
@@ -44,7 +44,7 @@ pub(super) struct Polynomial {
 /// A product of Chebyshev's polynomials: an earlier term's times one of another
 /// parameter.
 #[derive(Clone, Copy, Debug)]
-struct Term {
+struct PolynomialTerm {
     /// The earlier term.
     of: usize,
     parameter: usize,
@@ -155,7 +155,7 @@ fn computed(
 
 impl Polynomial {
     /// By least squares on all curves of a study.
-    fn of(study: &Study, problem: &CurveProblem, terms: Vec<Term>) -> Self {
+    fn of(study: &Study, problem: &CurveProblem, terms: Vec<PolynomialTerm>) -> Self {
         let white: Vec<Vec<f64>> =
             (study.points.iter()).map(|point| study.ball.whitened(point)).collect();
         let speeds = study.curves.first().map_or(0, Vec::len);
@@ -214,15 +214,15 @@ impl Polynomial {
 
 /// Every product of Chebyshev's polynomials up to a degree in all, the constant
 /// first, factors before what they are factors of.
-fn terms(parameters: usize, degree: usize) -> Vec<Term> {
-    let constant = Term { of: 0, parameter: 0, degree: 0 };
+fn terms(parameters: usize, degree: usize) -> Vec<PolynomialTerm> {
+    let constant = PolynomialTerm { of: 0, parameter: 0, degree: 0 };
     let mut found = vec![(constant, 0)];
     for parameter in 0..parameters {
         for of in 0..found.len() {
             let used = found[of].1;
             for own in 1..=degree - used {
                 let degree = own;
-                let term = Term { of, parameter, degree };
+                let term = PolynomialTerm { of, parameter, degree };
                 found.push((term, used + own));
             }
         }

@@ -64,7 +64,6 @@ pub enum QualityFlag {
 impl QualityFlag {
     /// Whether times may be of something else than the wave: of a clipped or hardly sampled pulse,
     /// or of pulses taken for one another.
-    #[must_use]
     pub fn is_grave(&self) -> bool {
         matches!(self, Self::Saturation(_) | Self::Order | Self::Unidentified | Self::FewSamples(_))
     }
@@ -106,7 +105,6 @@ pub struct Normalisation {
 
 impl Normalisation {
     /// A sample as height above the baseline, pulses up.
-    #[must_use]
     pub fn height(&self, sample: f64) -> f64 {
         self.sign * (sample - self.baseline.offset)
     }
@@ -230,8 +228,7 @@ impl Found {
     }
 
     /// Normalisation of the channel that holds this pulse.
-    #[must_use]
-    pub fn normalisation(&self, kind: PulseKind) -> &Normalisation {
+    pub(crate) fn normalisation(&self, kind: PulseKind) -> &Normalisation {
         match kind {
             PulseKind::Wall => &self.wall_channel,
             PulseKind::Incident | PulseKind::Reflected => &self.sensor,

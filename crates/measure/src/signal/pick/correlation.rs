@@ -115,7 +115,6 @@ impl Correlator {
 ///
 /// Negative when `later` comes first. `None` when either slice is empty, is 0
 /// throughout or holds numbers that are not finite. The cost is the product of the two lengths.
-#[must_use]
 pub fn delay_by_cross_correlation(earlier: &[f64], later: &[f64], interval_s: f64) -> Option<f64> {
     let behind = isize::try_from(earlier.len()).ok()?;
     let ahead = isize::try_from(later.len()).ok()?;

@@ -16,7 +16,6 @@ pub struct Shape {
 
 impl Shape {
     /// Powers below 2 have no smooth end and count as 2.
-    #[must_use]
     pub fn cos_power(power: f64) -> Self {
         let power = power.max(2.0);
         let turn = 2.0 * 0.5_f64.powf(power.recip()).acos();
@@ -24,7 +23,6 @@ impl Shape {
     }
 
     /// Value at z.
-    #[must_use]
     pub fn value(&self, z: f64) -> f64 {
         self.value_slope(z).0
     }

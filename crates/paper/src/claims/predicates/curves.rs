@@ -2,19 +2,19 @@
 
 use super::{branches, curves, missing};
 use crate::claims::evidence::TofRatio;
-use crate::claims::finding::{Comparisons, Finding};
+use crate::claims::finding::{ClaimFinding, Comparisons};
 use crate::claims::{Branch, Claim, Curve, Evidence};
 use hertzchain_measure::signal::PowerLaw;
 
 /// R² of the straight line in log–log is at least the threshold, for every
 /// case and branch; in part if it is at least the weaker one.
-pub(super) fn r_squared(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn r_squared(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let finding = r_squared_above(claim.threshold, claim, evidence);
     let weaker = claim.partly.map(|least| r_squared_above(least, claim, evidence));
     finding.or_in_part(weaker.as_ref())
 }
 
-fn r_squared_above(least: f64, claim: &Claim, evidence: &Evidence) -> Finding {
+fn r_squared_above(least: f64, claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_fit(claim, evidence, &|curve, branch| {
         let fit = curve.power_law(branch).ok()?;
         let accuracy = r_squared_accuracy(curve, branch, &fit);
@@ -45,7 +45,7 @@ fn of_residual(curve: &Curve, fit: &PowerLaw) -> f64 {
 /// paper's points, is at most the threshold, for every case and branch. With
 /// value r/s, a residual is as wrong as its ToF and the fit, 2 ΔT/T, and a
 /// standard error as the slope that it comes from: Δ = 2 (ΔT/T)/s + (r/s) Δs/s.
-pub(super) fn residuals(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn residuals(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_fit(claim, evidence, &|curve, branch| {
         let fit = curve.weighted_power_law(branch).ok()?;
         let errors = curve.standard_errors_s(branch);
@@ -69,7 +69,7 @@ fn accuracy(curve: &Curve) -> f64 {
 /// Evaluates a fit: the value, its margin and their accuracy.
 type FitValue<'a> = &'a dyn Fn(&Curve, Branch) -> Option<(f64, f64, f64)>;
 
-fn each_fit(claim: &Claim, evidence: &Evidence, measure: FitValue<'_>) -> Finding {
+fn each_fit(claim: &Claim, evidence: &Evidence, measure: FitValue<'_>) -> ClaimFinding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
     };
@@ -77,7 +77,7 @@ fn each_fit(claim: &Claim, evidence: &Evidence, measure: FitValue<'_>) -> Findin
     for curve in curves {
         for branch in branches(claim) {
             let Some((value, margin, accuracy)) = measure(curve, branch) else {
-                return Finding::without_numbers("no power law can be fitted");
+                return ClaimFinding::without_numbers("no power law can be fitted");
             };
             comparisons.add(margin, value, accuracy, || {
                 format!("{} ToF of {}", branch.name(), curve.case)
@@ -92,7 +92,7 @@ fn each_fit(claim: &Claim, evidence: &Evidence, measure: FitValue<'_>) -> Findin
 /// as wrong as the ToFs, which lie between about ±1 in ln v, and the standard error
 /// as the residuals that it comes from. The accuracy is the distance to the worst
 /// of these towards the threshold: d/s − (d − Δd)/(s + Δs), or (d + Δd)/(s − Δs) − d/s.
-pub(super) fn exponents_differ(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn exponents_differ(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let curves = curves(claim, evidence).unwrap_or_default();
     let [one, other] = curves[..] else {
         return missing();
@@ -101,7 +101,7 @@ pub(super) fn exponents_differ(claim: &Claim, evidence: &Evidence) -> Finding {
     for branch in branches(claim) {
         let fits = (one.power_law(branch), other.power_law(branch));
         let (Ok(a), Ok(b)) = fits else {
-            return Finding::without_numbers("no power law can be fitted");
+            return ClaimFinding::without_numbers("no power law can be fitted");
         };
         let error = a.exponent_error.hypot(b.exponent_error);
         let difference = (b.exponent - a.exponent).abs();
@@ -203,7 +203,7 @@ fn weights(at: &[f64]) -> Vec<f64> {
 }
 
 /// The two ratio curves correlate by more than the threshold.
-pub(super) fn same_trends(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn same_trends(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let [one, other] = &claim.cases[..] else {
         return missing();
     };
@@ -219,7 +219,7 @@ pub(super) fn same_trends(claim: &Claim, evidence: &Evidence) -> Finding {
 /// The first case goes with the second more than with the third, although
 /// its viscosity is nearer to the third's. The accuracies of the two
 /// correlations add up.
-pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let [one, similar, other] = &claim.cases[..] else {
         return missing();
     };
@@ -245,7 +245,7 @@ pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
 
 /// At every speed the ratios are neither in the order of the viscosities nor
 /// in the reverse one. A step between two ratios is as wrong as both.
-pub(super) fn viscosity_does_not_order_ratios(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn viscosity_does_not_order_ratios(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let mut oils: Vec<(f64, Vec<_>)> = Vec::new();
     for case in &claim.cases {
         match evidence.oil(case) {
@@ -275,7 +275,7 @@ pub(super) fn viscosity_does_not_order_ratios(claim: &Claim, evidence: &Evidence
 /// At every speed the ratios of two cases differ by more than the threshold times
 /// the standard error of their difference. The dry ToF cancels: the number is
 /// |T₁ − T₂|/s with s² = s₁² + s₂², and Δ = (ΔT₁ + ΔT₂)/s + (|T₁ − T₂|/s) Δs/s.
-pub(super) fn ratios_differ(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn ratios_differ(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let curves = curves(claim, evidence).unwrap_or_default();
     let [one, other] = curves[..] else {
         return missing();

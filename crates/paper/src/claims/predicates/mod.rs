@@ -6,8 +6,8 @@ mod ratios;
 
 use super::claim::Predicate;
 use super::evidence::SPEED_SCATTER_M_S;
-use super::finding::{Comparisons, Finding};
-use super::{Branch, Claim, Curve, Evidence, Measured, Point};
+use super::finding::{ClaimFinding, Comparisons};
+use super::{Branch, Claim, Curve, Evidence, MeasuredKind, ShotPoint};
 
 static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("pulses-separate", pulses_separate),
@@ -53,7 +53,6 @@ pub(super) static OF_THE_END: [&str; 2] = ["gaps-open", "no-rebound"];
 pub(super) const CLOSING: &str = "closing-gaps-shortens-return";
 
 /// A predicate on single shots by its name.
-#[must_use]
 pub fn find(name: &str) -> Option<Predicate<Evidence>> {
     let row = PREDICATES.iter().find(|(known, _)| *known == name);
     row.map(|(_, predicate)| *predicate)
@@ -67,8 +66,8 @@ fn curves<'a>(claim: &Claim, evidence: &'a Evidence) -> Option<Vec<&'a Curve>> {
 }
 
 /// The answer when a case of the claim was not computed.
-fn missing() -> Finding {
-    Finding::without_numbers("a case that this claim is about was not computed")
+fn missing() -> ClaimFinding {
+    ClaimFinding::without_numbers("a case that this claim is about was not computed")
 }
 
 /// The branches of a claim; both when it names none.
@@ -80,7 +79,7 @@ fn branches(claim: &Claim) -> Vec<Branch> {
 }
 
 /// The shots of a curve at the speeds of a claim.
-fn within<'a>(claim: &Claim, curve: &'a Curve) -> impl Iterator<Item = &'a Point> {
+fn within<'a>(claim: &Claim, curve: &'a Curve) -> impl Iterator<Item = &'a ShotPoint> {
     let speeds = claim.from_m_s..=claim.to_m_s;
     curve.points.iter().filter(move |p| speeds.contains(&p.speed_m_s))
 }
@@ -89,8 +88,8 @@ fn within<'a>(claim: &Claim, curve: &'a Curve) -> impl Iterator<Item = &'a Point
 fn each_point(
     claim: &Claim,
     evidence: &Evidence,
-    mut compare: impl FnMut(&mut Comparisons, &Curve, &Point),
-) -> Finding {
+    mut compare: impl FnMut(&mut Comparisons, &Curve, &ShotPoint),
+) -> ClaimFinding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
     };
@@ -103,7 +102,7 @@ fn each_point(
     comparisons.finding()
 }
 
-fn place(curve: &Curve, p: &Point) -> String {
+fn place(curve: &Curve, p: &ShotPoint) -> String {
     format!("{} at {} m/s", curve.case, p.speed_m_s)
 }
 
@@ -111,7 +110,7 @@ fn place(curve: &Curve, p: &Point) -> String {
 /// exceeds the threshold times the mean full width at half maximum of its two
 /// pulses. A pulse out of order has a negative ToF. Relative errors of the ToF and of
 /// the widths add up.
-fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
+fn pulses_separate(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_point(claim, evidence, |comparisons, curve, p| {
         let [incident, wall, reflected] = p.widths_s;
         let ways = [(p.tof_incident_s, incident + wall), (p.tof_reflected_s, wall + reflected)];
@@ -124,7 +123,7 @@ fn pulses_separate(claim: &Claim, evidence: &Evidence) -> Finding {
 }
 
 /// Reflected over incident ToF exceeds the threshold at every speed.
-fn return_takes_longer(claim: &Claim, evidence: &Evidence) -> Finding {
+fn return_takes_longer(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_point(claim, evidence, |comparisons, curve, p| {
         let value = p.tof_reflected_s / p.tof_incident_s;
         let accuracy = 2.0 * value * p.accuracy_reached;
@@ -134,7 +133,7 @@ fn return_takes_longer(claim: &Claim, evidence: &Evidence) -> Finding {
 
 /// A second reflected maximum of at least the threshold times the first; in
 /// part above the weaker threshold. With r = p₂/p₁, Δr = Δp₂/p₁ + r Δp₁/p₁.
-fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
+fn return_is_split(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let curves = curves(claim, evidence).unwrap_or_default();
     let Some(p) = curves.iter().flat_map(|curve| within(claim, curve)).next() else {
         return missing();
@@ -145,7 +144,8 @@ fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
         "reflected peaks of {:.3} N and {:.3} N at {} m/s",
         p.returning_peak_n, p.second_returning_peak_n, p.speed_m_s
     );
-    let above = |threshold| Finding::of_one(value - threshold, value, accuracy, detail.clone());
+    let above =
+        |threshold| ClaimFinding::of_one(value - threshold, value, accuracy, detail.clone());
     above(claim.threshold).or_in_part(claim.partly.map(above).as_ref())
 }
 
@@ -153,7 +153,7 @@ fn return_is_split(claim: &Claim, evidence: &Evidence) -> Finding {
 /// close as it meets the wall, above the threshold at every speed; in part above
 /// the weaker one. The share is 1 − c/e, with Δ = (Δc + |c/e| Δe)/e. Chains without losses are
 /// loosened as well: the detail has their difference.
-fn closing_gaps_shortens_return(claim: &Claim, evidence: &Evidence) -> Finding {
+fn closing_gaps_shortens_return(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let mut most = f64::NEG_INFINITY;
     let mut above = |threshold: f64| {
         each_point(claim, evidence, |comparisons, curve, p| {
@@ -169,12 +169,12 @@ fn closing_gaps_shortens_return(claim: &Claim, evidence: &Evidence) -> Finding {
     let full = above(claim.threshold);
     let weaker = above(claim.partly.unwrap_or(claim.threshold));
     let finding = full.or_in_part(Some(&weaker));
-    Finding { detail: format!("{}; largest share {most:.4}", finding.detail), ..finding }
+    ClaimFinding { detail: format!("{}; largest share {most:.4}", finding.detail), ..finding }
 }
 
 /// Reflected less incident ToF of a shot with its gaps, with closed ones, and without
 /// losses, in words.
-fn differences(p: &Point, evidence: &Evidence) -> String {
+fn differences(p: &ShotPoint, evidence: &Evidence) -> String {
     let lossless = evidence.curve("hertz").and_then(|c| c.at(p.speed_m_s));
     let lossless = lossless.map(|p| p.tof_reflected_s - p.tof_incident_s);
     let lossless = lossless.map_or(String::new(), |difference_s| {
@@ -186,7 +186,7 @@ fn differences(p: &Point, evidence: &Evidence) -> String {
 
 /// The scatter of the striker's speed makes the reflected ToF scatter more
 /// than the incident one: ratio of the two |dT/dv| above the threshold.
-fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> Finding {
+fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
     };
@@ -210,7 +210,7 @@ fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> Finding {
 
 /// The gaps between beads, less the overlaps, exceed the threshold when the
 /// reflected pulse has passed, and stay below the most that the claim allows.
-fn gaps_open(claim: &Claim, evidence: &Evidence) -> Finding {
+fn gaps_open(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let largest = claim.at_most.unwrap_or(f64::INFINITY);
     each_point(claim, evidence, |comparisons, curve, p| {
         let (value, accuracy) = (p.loosened_m, p.loosened_accuracy_m);
@@ -222,7 +222,7 @@ fn gaps_open(claim: &Claim, evidence: &Evidence) -> Finding {
 
 /// At the claim's speeds the striker's velocity, at first separation and at
 /// the end of the shot, is above the threshold: it does not come back.
-fn no_rebound(claim: &Claim, evidence: &Evidence) -> Finding {
+fn no_rebound(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_point(claim, evidence, |comparisons, curve, p| {
         let moments = [
             ("first separation", p.striker_separation_m_s),
@@ -240,11 +240,11 @@ fn no_rebound(claim: &Claim, evidence: &Evidence) -> Finding {
 /// Wall over sensor peak and reflected over incident peak, each divided by
 /// the same of the dry chain, lie below the threshold at every speed. Its accuracy
 /// is that of the four peaks, whose relative errors add up.
-fn attenuates_more(claim: &Claim, evidence: &Evidence) -> Finding {
+fn attenuates_more(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let Some(dry) = evidence.curve("dry") else {
         return missing();
     };
-    let left = |p: &Point| {
+    let left = |p: &ShotPoint| {
         let [wall, reflected] = [p.wall_peak_n, p.returning_peak_n];
         [("wall", wall / p.sensor_peak_n), ("return", reflected / p.sensor_peak_n)]
     };
@@ -263,38 +263,38 @@ fn attenuates_more(claim: &Claim, evidence: &Evidence) -> Finding {
 }
 
 /// Between neighbouring speeds every ToF falls by more than the threshold.
-fn tof_falls(claim: &Claim, evidence: &Evidence) -> Finding {
+fn tof_falls(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let quantities = branches(claim).into_iter().map(|branch| {
-        let log = move |p: &Point| (-p.tof_s(branch).ln(), p.accuracy_reached);
-        (branch.name(), Box::new(log) as Box<dyn Fn(&Point) -> (f64, f64)>)
+        let log = move |p: &ShotPoint| (-p.tof_s(branch).ln(), p.accuracy_reached);
+        (branch.name(), Box::new(log) as Box<dyn Fn(&ShotPoint) -> (f64, f64)>)
     });
     rises(claim, evidence, &quantities.collect::<Vec<_>>())
 }
 
 /// A pulse and the height of its peak in N.
-type NamedPeak = (&'static str, fn(&Point) -> f64);
+type NamedPeak = (&'static str, fn(&ShotPoint) -> f64);
 
 /// Between neighbouring speeds every peak rises by more than the threshold.
-fn peaks_rise(claim: &Claim, evidence: &Evidence) -> Finding {
+fn peaks_rise(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let peaks: [NamedPeak; 3] = [
         ("sensor peak", |p| p.sensor_peak_n),
         ("wall peak", |p| p.wall_peak_n),
         ("reflected peak", |p| p.returning_peak_n),
     ];
     let quantities = peaks.map(|(name, peak)| {
-        let log = move |p: &Point| (peak(p).ln(), p.peak_accuracy);
-        (name, Box::new(log) as Box<dyn Fn(&Point) -> (f64, f64)>)
+        let log = move |p: &ShotPoint| (peak(p).ln(), p.peak_accuracy);
+        (name, Box::new(log) as Box<dyn Fn(&ShotPoint) -> (f64, f64)>)
     });
     rises(claim, evidence, &quantities)
 }
 
 /// A quantity's name, and its logarithm with its accuracy.
-type Quantity<'a> = (&'a str, Box<dyn Fn(&Point) -> (f64, f64)>);
+type Quantity<'a> = (&'a str, Box<dyn Fn(&ShotPoint) -> (f64, f64)>);
 
 /// Logarithms rise between neighbouring speeds; the value is the smallest
 /// d ln(quantity)/d ln(speed), its accuracy that of both ends over the step in
 /// ln(speed).
-fn rises(claim: &Claim, evidence: &Evidence, quantities: &[Quantity<'_>]) -> Finding {
+fn rises(claim: &Claim, evidence: &Evidence, quantities: &[Quantity<'_>]) -> ClaimFinding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
     };
@@ -317,23 +317,23 @@ fn rises(claim: &Claim, evidence: &Evidence, quantities: &[Quantity<'_>]) -> Fin
 
 /// Measured ratios of the sensor's peak to the wall's lie within the threshold
 /// times their standard error of the model's; not decidable without measured points.
-fn peaks_overlap(claim: &Claim, evidence: &Evidence) -> Finding {
-    overlap(claim, evidence, &[Measured::SensorOverWall])
+fn peaks_overlap(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
+    overlap(claim, evidence, &[MeasuredKind::SensorOverWall])
 }
 
 /// The same of measured times of flight.
-fn tofs_overlap(claim: &Claim, evidence: &Evidence) -> Finding {
-    overlap(claim, evidence, &Branch::BOTH.map(Measured::Tof))
+fn tofs_overlap(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
+    overlap(claim, evidence, &Branch::BOTH.map(MeasuredKind::Tof))
 }
 
 /// The same of measured wet over dry incident times of flight.
-fn ratios_overlap(claim: &Claim, evidence: &Evidence) -> Finding {
-    overlap(claim, evidence, &[Measured::Ratio])
+fn ratios_overlap(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
+    overlap(claim, evidence, &[MeasuredKind::Ratio])
 }
 
 /// The measured points' errors are in their standard errors: the accuracy is
 /// that of the model.
-fn overlap(claim: &Claim, evidence: &Evidence, of: &[Measured]) -> Finding {
+fn overlap(claim: &Claim, evidence: &Evidence, of: &[MeasuredKind]) -> ClaimFinding {
     let mut comparisons = Comparisons::default();
     for point in evidence.digitised.iter().filter(|p| of.contains(&p.what)) {
         let model = model(evidence, point.what, &point.case, point.speed_m_s);
@@ -347,22 +347,29 @@ fn overlap(claim: &Claim, evidence: &Evidence, of: &[Measured]) -> Finding {
         });
     }
     match comparisons.is_empty() {
-        true => Finding::without_numbers("the paper prints no digitised point to compare with"),
+        true => {
+            ClaimFinding::without_numbers("the paper prints no digitised point to compare with")
+        }
         false => comparisons.finding(),
     }
 }
 
 /// The model's number in the place of a measured point, with its absolute accuracy:
 /// relative errors of the two numbers of a ratio add up.
-fn model(evidence: &Evidence, what: Measured, case: &str, speed_m_s: f64) -> Option<(f64, f64)> {
+fn model(
+    evidence: &Evidence,
+    what: MeasuredKind,
+    case: &str,
+    speed_m_s: f64,
+) -> Option<(f64, f64)> {
     let p = evidence.curve(case)?.at(speed_m_s)?;
     Some(match what {
-        Measured::SensorOverWall => {
+        MeasuredKind::SensorOverWall => {
             let ratio = p.sensor_peak_n / p.wall_peak_n;
             (ratio, 2.0 * p.peak_accuracy * ratio)
         }
-        Measured::Tof(branch) => (p.tof_s(branch), p.tof_accuracy_s(branch)),
-        Measured::Ratio => {
+        MeasuredKind::Tof(branch) => (p.tof_s(branch), p.tof_accuracy_s(branch)),
+        MeasuredKind::Ratio => {
             let dry = evidence.curve("dry")?.at(speed_m_s)?;
             let ratio = p.tof_incident_s / dry.tof_incident_s;
             (ratio, ratio * (p.accuracy_reached + dry.accuracy_reached))
@@ -378,21 +385,21 @@ fn viscosity_pa_s(claim: &Claim, evidence: &Evidence, at: usize) -> Option<f64> 
 
 /// The first case's dynamic viscosity, in Pa s, lies within the threshold of the
 /// printed one.
-fn dynamic_viscosity(claim: &Claim, evidence: &Evidence) -> Finding {
+fn dynamic_viscosity(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let viscosity = viscosity_pa_s(claim, evidence, 0);
     viscosity.map_or_else(missing, |viscosity| near(claim, viscosity))
 }
 
 /// The first case's dynamic viscosity over the second's lies within the
 /// threshold of the printed ratio.
-fn viscosity_ratio(claim: &Claim, evidence: &Evidence) -> Finding {
+fn viscosity_ratio(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let [a, b] = [0, 1].map(|at| viscosity_pa_s(claim, evidence, at));
     a.zip(b).map_or_else(missing, |(a, b)| near(claim, a / b))
 }
 
 /// The larger dynamic viscosity of two cases is less than the threshold times
 /// the smaller.
-fn viscosities_similar(claim: &Claim, evidence: &Evidence) -> Finding {
+fn viscosities_similar(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let [a, b] = [0, 1].map(|at| viscosity_pa_s(claim, evidence, at));
     a.zip(b).map_or_else(missing, |(a, b)| {
         let value = a.max(b) / a.min(b);
@@ -401,17 +408,17 @@ fn viscosities_similar(claim: &Claim, evidence: &Evidence) -> Finding {
 }
 
 /// η/Y in s lies within the threshold of the printed value.
-fn relaxation_time(claim: &Claim, evidence: &Evidence) -> Finding {
+fn relaxation_time(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     near(claim, evidence.viscosity_over_modulus_s)
 }
 
 /// The decimal logarithm of η/Y in s lies within the threshold of the expected
 /// one.
-fn relaxation_order(claim: &Claim, evidence: &Evidence) -> Finding {
+fn relaxation_order(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     near(claim, evidence.viscosity_over_modulus_s.log10())
 }
 
-fn near(claim: &Claim, value: f64) -> Finding {
+fn near(claim: &Claim, value: f64) -> ClaimFinding {
     let expected = claim.expected.first().copied().unwrap_or(f64::NAN);
     let margin = claim.threshold - (value - expected).abs();
     of_constants(value, margin, Some(expected))
@@ -419,11 +426,11 @@ fn near(claim: &Claim, value: f64) -> Finding {
 
 /// Nothing is computed here but arithmetic on printed constants: the value is
 /// wrong by what double precision rounds, n ε |x|.
-fn of_constants(value: f64, margin: f64, expected: Option<f64>) -> Finding {
+fn of_constants(value: f64, margin: f64, expected: Option<f64>) -> ClaimFinding {
     /// Operations behind a value: two conversions of units and a product each for
     /// two liquids, their ratio, a logarithm and the difference from what is printed.
     const OPERATIONS: f64 = 10.0;
     let accuracy = OPERATIONS * f64::EPSILON * value.abs();
     let detail = "from the printed constants alone".to_owned();
-    Finding { expected, ..Finding::of_one(margin, value, accuracy, detail) }
+    ClaimFinding { expected, ..ClaimFinding::of_one(margin, value, accuracy, detail) }
 }

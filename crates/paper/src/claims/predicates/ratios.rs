@@ -2,33 +2,43 @@
 
 use super::missing;
 use crate::claims::evidence::TofRatio;
-use crate::claims::finding::{Comparisons, Distance, Finding, Verdict};
+use crate::claims::finding::{ClaimFinding, Comparisons, Distance, Verdict};
 use crate::claims::{Claim, Evidence};
 
 /// Every ratio at the claim's speeds lies below the threshold.
-pub(super) fn below(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn below(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     side(claim, evidence, -1.0)
 }
 
 /// Every ratio at the claim's speeds lies above the threshold.
-pub(super) fn above(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn above(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     side(claim, evidence, 1.0)
 }
 
-fn side(claim: &Claim, evidence: &Evidence, sign: f64) -> Finding {
+fn side(claim: &Claim, evidence: &Evidence, sign: f64) -> ClaimFinding {
+    each_case(claim, evidence, |comparisons, case, ratios| {
+        let inside = |r: &&TofRatio| (claim.from_m_s..=claim.to_m_s).contains(&r.speed_m_s);
+        for r in ratios.iter().filter(inside) {
+            let margin = sign * (r.incident - claim.threshold);
+            let place = || format!("{case} at {} m/s", r.speed_m_s);
+            comparisons.add(margin, r.incident, r.accuracy(), place);
+        }
+    })
+}
+
+/// Compares the ratios of every case of a claim.
+fn each_case(
+    claim: &Claim,
+    evidence: &Evidence,
+    mut compare: impl FnMut(&mut Comparisons, &str, &[TofRatio]),
+) -> ClaimFinding {
     let mut comparisons = Comparisons::default();
     for case in &claim.cases {
         let ratios = evidence.ratios(case);
         if ratios.is_empty() {
             return missing();
         }
-        let inside = |r: &&TofRatio| (claim.from_m_s..=claim.to_m_s).contains(&r.speed_m_s);
-        for r in ratios.iter().filter(inside) {
-            let margin = sign * (r.incident - claim.threshold);
-            let accuracy = r.accuracy();
-            comparisons
-                .add(margin, r.incident, accuracy, || format!("{case} at {} m/s", r.speed_m_s));
-        }
+        compare(&mut comparisons, case, &ratios);
     }
     comparisons.finding()
 }
@@ -38,39 +48,31 @@ type SpeedAxis = fn(f64) -> f64;
 
 /// In every case the ratio rises over more than the threshold's share of the
 /// range of v.
-pub(super) fn mainly_rises(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn mainly_rises(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     rises_along(claim, evidence, |speed_m_s| speed_m_s)
 }
 
 /// The same of the range of ln v.
-pub(super) fn mainly_rises_log(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn mainly_rises_log(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     rises_along(claim, evidence, f64::ln)
 }
 
 /// A share without turns is exact as long as no step between neighbouring speeds
 /// could be one of the other sign.
-fn rises_along(claim: &Claim, evidence: &Evidence, axis: SpeedAxis) -> Finding {
-    let mut comparisons = Comparisons::default();
+fn rises_along(claim: &Claim, evidence: &Evidence, axis: SpeedAxis) -> ClaimFinding {
     let mut steps: Vec<Distance> = Vec::new();
-    for case in &claim.cases {
-        let ratios = evidence.ratios(case);
-        let (Some(first), Some(last)) = (ratios.first(), ratios.last()) else {
-            return missing();
-        };
-        let all = axis(last.speed_m_s) - axis(first.speed_m_s);
+    let finding = each_case(claim, evidence, |comparisons, case, ratios| {
+        let place = |r: &TofRatio| axis(r.speed_m_s);
+        let all = ratios.last().map_or(0.0, place) - ratios.first().map_or(0.0, place);
         steps.extend(ratios.windows(2).filter_map(distance_from_flat));
-        let at: Vec<Placed> = ratios
-            .iter()
-            .map(|r| Placed { at: axis(r.speed_m_s), ratio: r.incident, unsure: r.accuracy() })
-            .collect();
-        let (rising, accuracy) = rising(&at);
+        let placed = |r| Placed { at: place(r), ratio: r.incident, unsure: r.accuracy() };
+        let (rising, accuracy) = rising(&ratios.iter().map(placed).collect::<Vec<_>>());
         let (value, accuracy) = (rising / all, accuracy / all);
-        let margin = value - claim.threshold;
-        comparisons.add(margin, value, accuracy, || case.clone());
-    }
+        comparisons.add(value - claim.threshold, value, accuracy, || case.to_owned());
+    });
     let in_accuracies = |step: &Distance| step.margin / step.accuracy;
     let nearest = |a: &Distance, b: &Distance| in_accuracies(a).total_cmp(&in_accuracies(b));
-    Finding { nearest_change: steps.into_iter().min_by(nearest), ..comparisons.finding() }
+    ClaimFinding { nearest_change: steps.into_iter().min_by(nearest), ..finding }
 }
 
 /// How far the step between two ratios is from 0.
@@ -153,50 +155,40 @@ fn step_accuracy(low: &TofRatio, high: &TofRatio) -> f64 {
 
 /// In every case the ratio at the highest speed exceeds the one at the lowest
 /// by more than the threshold.
-pub(super) fn ends_higher(claim: &Claim, evidence: &Evidence) -> Finding {
-    let mut comparisons = Comparisons::default();
-    for case in &claim.cases {
-        let ratios = evidence.ratios(case);
-        let (Some(first), Some(last)) = (ratios.first(), ratios.last()) else {
-            return missing();
-        };
-        let value = last.incident - first.incident;
-        let accuracy = step_accuracy(first, last);
-        comparisons.add(value - claim.threshold, value, accuracy, || {
-            format!("{case} from {} to {} m/s", first.speed_m_s, last.speed_m_s)
-        });
-    }
-    comparisons.finding()
+pub(super) fn ends_higher(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
+    each_case(claim, evidence, |comparisons, case, ratios| {
+        if let (Some(first), Some(last)) = (ratios.first(), ratios.last()) {
+            let value = last.incident - first.incident;
+            let accuracy = step_accuracy(first, last);
+            comparisons.add(value - claim.threshold, value, accuracy, || {
+                format!("{case} from {} to {} m/s", first.speed_m_s, last.speed_m_s)
+            });
+        }
+    })
 }
 
 /// Every case has a speed range in which the ratio falls from a maximum by
 /// more than the threshold.
-pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> Finding {
-    let mut comparisons = Comparisons::default();
-    for case in &claim.cases {
-        let ratios = evidence.ratios(case);
-        if ratios.is_empty() {
-            return missing();
-        }
+pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
+    each_case(claim, evidence, |comparisons, case, ratios| {
         let accuracy = ratios.iter().map(|r| r.accuracy()).fold(0.0, f64::max);
         // Negative where the ratio rises throughout: the smallest rise.
         let (mut highest, mut fall, mut at) = (f64::NAN, f64::NEG_INFINITY, f64::NAN);
-        for r in &ratios {
+        for r in ratios {
             if highest - r.incident > fall {
                 (fall, at) = (highest - r.incident, r.speed_m_s);
             }
             highest = r.incident.max(highest);
         }
-        comparisons
-            .add(fall - claim.threshold, fall, 2.0 * accuracy, || format!("{case} at {at} m/s"));
-    }
-    comparisons.finding()
+        let place = || format!("{case} at {at} m/s");
+        comparisons.add(fall - claim.threshold, fall, 2.0 * accuracy, place);
+    })
 }
 
 /// How far ratios reach to both sides of 1: of two oils at the speed where that
 /// is most, and of the oil with most of it over its speeds. The number is the smaller
 /// of the two; negative where all lie on one side.
-pub(super) fn either_way(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn either_way(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let oils: Vec<Vec<TofRatio>> = claim.cases.iter().map(|c| evidence.ratios(c)).collect();
     let Some(first) = oils.first().filter(|_| oils.iter().all(|o| !o.is_empty())) else {
         return missing();
@@ -328,7 +320,7 @@ fn nearest_to_1(ratios: &[TofRatio]) -> Option<&TofRatio> {
 /// twice that of downward ones, which is 1 in no other case; not decidable where
 /// ratios that are 1 within their accuracy could change it. A passage is one
 /// between neighbouring speeds.
-pub(super) fn crosses_once_upward(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn crosses_once_upward(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let ratios = ratios(claim, evidence);
     let (Some(nearest), Some(expected)) = (nearest_to_1(&ratios), claim.expected.first()) else {
         return missing();
@@ -336,13 +328,13 @@ pub(super) fn crosses_once_upward(claim: &Claim, evidence: &Evidence) -> Finding
     let (value, accuracy) = (count(&ratios), count_accuracy(&ratios));
     let margin = claim.threshold - (value - expected).abs();
     let detail = passages(&ratios, nearest);
-    Finding {
+    ClaimFinding {
         expected: Some(*expected),
         nearest_change: Some(Distance {
             margin: (nearest.incident - 1.0).abs(),
             accuracy: nearest.accuracy(),
         }),
-        ..Finding::of_one(margin, value, accuracy, detail)
+        ..ClaimFinding::of_one(margin, value, accuracy, detail)
     }
 }
 
@@ -366,7 +358,7 @@ fn passages(ratios: &[TofRatio], nearest: &TofRatio) -> String {
 
 /// The upward passage of 1 that is nearest to the printed speed lies within the
 /// threshold of it; fails without one.
-pub(super) fn crosses_at_speed(claim: &Claim, evidence: &Evidence) -> Finding {
+pub(super) fn crosses_at_speed(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let ratios = ratios(claim, evidence);
     let (false, Some(expected)) = (ratios.is_empty(), claim.expected.first()) else {
         return missing();
@@ -378,18 +370,18 @@ pub(super) fn crosses_at_speed(claim: &Claim, evidence: &Evidence) -> Finding {
         return nowhere(*expected, ratios.iter().any(is_open));
     };
     let detail = format!("the nearest of {} upward passages", up.len());
-    Finding {
+    ClaimFinding {
         expected: Some(*expected),
-        ..Finding::of_one(claim.threshold - off(value), value, accuracy, detail)
+        ..ClaimFinding::of_one(claim.threshold - off(value), value, accuracy, detail)
     }
 }
 
 /// The answer without a passage, which a ratio of 1 within its accuracy may hide.
-fn nowhere(expected: f64, open: bool) -> Finding {
-    Finding {
+fn nowhere(expected: f64, open: bool) -> ClaimFinding {
+    ClaimFinding {
         verdict: if open { Verdict::NotDecidable } else { Verdict::Fails },
         leaning: Verdict::Fails,
         expected: Some(expected),
-        ..Finding::without_numbers("no upward passage of 1")
+        ..ClaimFinding::without_numbers("no upward passage of 1")
     }
 }

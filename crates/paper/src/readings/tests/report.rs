@@ -1,17 +1,17 @@
 use super::*;
 use crate::claims::claims;
 
-fn row(reading: Reading, verdict: Verdict, claims: usize) -> Row {
-    Row { reading, verdicts: vec![verdict; claims], values: vec![0.0; claims] }
+fn row(reading: Reading, verdict: Verdict, claims: usize) -> ReadingRow {
+    ReadingRow { reading, verdicts: vec![verdict; claims], values: vec![0.0; claims] }
 }
 
 /// A scan of two readings, in a product of one switch, with no room for others.
-fn made_up(left_out: Vec<SwitchOptions>) -> Scan {
+fn made_up(left_out: Vec<SwitchOptions>) -> ReadingScan {
     let claims: Vec<Claim> = claims().unwrap().into_iter().map(|j| j.claim).collect();
     let wet = Reading::default().with("wet_everywhere", "yes").unwrap();
     let default = row(Reading::default(), Verdict::Fails, claims.len());
     let single = row(wet, Verdict::Holds, claims.len());
-    Scan {
+    ReadingScan {
         product_of: vec![("wet_everywhere", vec!["no", "yes"])],
         left_out,
         product: vec![default.clone(), single.clone()],

@@ -1,11 +1,11 @@
 use super::*;
-use crate::claims::{Curve, Digitised, Measured, Point, Verdict, claims};
+use crate::claims::{Curve, Digitised, MeasuredKind, ShotPoint, Verdict, claims};
 use std::cell::RefCell;
 
 /// A peak whose difference from a measured one is this many standard errors,
 /// computed to an accuracy.
 fn peaks(difference: f64, accuracy: f64) -> Evidence {
-    let point = Point {
+    let point = ShotPoint {
         speed_m_s: 1.0,
         tof_incident_s: 1.0,
         tof_reflected_s: 1.0,
@@ -29,7 +29,7 @@ fn peaks(difference: f64, accuracy: f64) -> Evidence {
     Evidence {
         curves: vec![Curve { case: "dry".to_owned(), points: vec![point] }],
         digitised: vec![Digitised {
-            what: Measured::SensorOverWall,
+            what: MeasuredKind::SensorOverWall,
             case: "dry".to_owned(),
             speed_m_s: 1.0,
             value: 1.0,

@@ -9,9 +9,10 @@ use crate::program::print::{self, print};
 use comfy_table::{ContentArrangement, Table, presets};
 use hertzchain_paper::claims::{EvaluatedClaim, MEANING, Verdict, computed_text};
 use hertzchain_paper::figures::{captions, figures};
-use hertzchain_paper::readings::Scan;
+use hertzchain_paper::readings::ReadingScan;
 use hertzchain_paper::reproduce::{
-    Options, PROVENANCE, Progress, ReproduceError, Reproduction, remove_stale_files, reproduce,
+    PROVENANCE, Progress, ReproduceError, ReproduceOptions, Reproduction, remove_stale_files,
+    reproduce,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Write as _;
@@ -22,8 +23,8 @@ pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
     // Whether it can be written to, before anything is computed for it.
     let mut folder = Folder::open(&arguments.out)?;
     let options = match arguments.readings {
-        true => Options::default().with_readings(),
-        false => Options::default(),
+        true => ReproduceOptions::default().with_readings(),
+        false => ReproduceOptions::default(),
     };
     let bar = Bar::new();
     let computed = reproduce(&options, &bar);
@@ -162,7 +163,7 @@ fn plain() -> Table {
     table
 }
 
-fn closest(scan: &Scan) -> String {
+fn closest(scan: &ReadingScan) -> String {
     let (closest, claims) = (scan.closest(), scan.claims.len());
     format!(
         "\nOf {} readings, closest to the paper: {}.\nWith the constants as printed it scores {} of {claims}, the default reading {}; \

@@ -1,5 +1,6 @@
 //! A shot in words.
 
+use crate::contact::HertzContact;
 use crate::missing;
 use crate::program::format::{Style, digits, pairs};
 use crate::program::print::heading;
@@ -22,7 +23,11 @@ pub(super) fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String 
     }
     text += &format!("\n{}", pairs(&flight(style, shot)));
     text += &match &shot.passage {
-        Ok(seen) => format!("\n{}\n{}", heading("Pulses"), pairs(&pulses(style, seen))),
+        Ok(seen) => {
+            let mut rows = pulses(style, seen);
+            rows.extend(contact(style, plan, shot));
+            format!("\n{}\n{}", heading("Pulses"), pairs(&rows))
+        }
         Err(reason) => format!(
             "\nNo time of flight: {}.\n{}",
             missing::reason(&plan.chain.far, style.units, reason),
@@ -137,6 +142,19 @@ fn pulses(style: Style, seen: &Passage) -> Rows {
         rows.push((String::new(), more));
     }
     rows
+}
+
+/// The wall contact at the pulse's peak, and when its balls yield.
+fn contact(style: Style, plan: &Plan, shot: &Shot) -> Option<(String, String)> {
+    let found = HertzContact::of_wall(style.units, plan, shot)?;
+    let brief = Style::brief(style.units);
+    let text = format!(
+        "radius {}, largest pressure {}: balls of a yield strength below {} yield",
+        brief.quantity(found.radius_m, "m"),
+        brief.quantity(found.pressure_pa, "Pa"),
+        brief.quantity(found.yield_strength_pa, "Pa"),
+    );
+    Some(("wall contact at its peak".to_owned(), text))
 }
 
 fn energy(style: Style, budget: &Budget) -> Rows {
