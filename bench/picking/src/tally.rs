@@ -221,5 +221,6 @@ fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -
         gaps: None,
         gap_in_pulse: false,
         holds_several: false,
+        excluded: false,
     }
 }

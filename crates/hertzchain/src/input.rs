@@ -6,6 +6,7 @@ use crate::options::{Input, Pick, SimulationOptions as How, Solver};
 use crate::quantity::Style;
 use hertzchain_chain::System;
 use hertzchain_experiment::{Experiment, Mistakes, OpenError, Units, longest_duration_s, preset};
+use hertzchain_measure::records::text;
 use hertzchain_sim as study;
 use hertzchain_sim::{InstructionSet, Plan};
 use std::path::Path;
@@ -43,6 +44,11 @@ pub(crate) fn assumed_preset(what: &str, chain: &str, preset: &str, options: &st
 }
 
 fn open_file(file: &Path) -> Result<Experiment, Failure> {
+    if file == Path::new("-") {
+        let read = text(file).map_err(|error| format!("standard input can't be read: {error}"));
+        let text = read.map_err(Failure::User)?;
+        return Ok(Experiment::from_text("standard input", &text)?);
+    }
     Experiment::open(file).map_err(|error| match error {
         OpenError::Mistakes(mistakes) => mistakes.into(),
         OpenError::Unreadable { .. } => {

@@ -436,3 +436,27 @@ fn a_measured_curve_is_fitted_in_memory_as_from_its_file() {
     let stored = inference::data(&folder.join("out/speeds.csv"), &options).unwrap();
     assert_eq!(curve.rows, stored.rows);
 }
+
+#[test]
+fn a_folders_other_files_are_listed_once_and_the_table_excludes_shots() {
+    let folder = folder("beside");
+    write(&folder.join("a.csv"), &volts(0.5, 1.0));
+    write(&folder.join("b.csv"), &volts(0.5, 1.01));
+    fs::write(folder.join("README.txt"), "Two shots.\n").unwrap();
+    fs::create_dir(folder.join("plots")).unwrap();
+    fs::write(folder.join("list.csv"), "file,speed,counts\na.csv,0.5,yes\nb.csv,0.5,no\n").unwrap();
+    let output = measure(&folder, &[".", "--shots", "list.csv", "--json", "--report", "page.html"]);
+    let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(
+        reported.matches("not read as recordings: README.txt, plots/;").count(),
+        1,
+        "{reported}"
+    );
+    let found = json(&output);
+    assert_eq!(found["shots"][0]["not_counted"].as_array().unwrap().len(), 0);
+    assert_eq!(found["shots"][1]["not_counted"][0], "excluded");
+    assert_eq!(found["cases"][0]["speeds"][0]["shots"], 1);
+    let page = fs::read_to_string(folder.join("page.html")).unwrap();
+    assert!(page.contains("excluded by the list of shots; does not count: excluded"), "{page}");
+    assert!(page.contains("data:image/svg+xml,%3Csvg"));
+}

@@ -26,6 +26,18 @@ fn a_table_from_standard_input_is_fitted_and_no_copy_of_it_stays() {
 }
 
 #[test]
+fn an_experiment_comes_from_standard_input() {
+    let preset = String::from_utf8(run(&["presets", "dry"]).stdout).unwrap();
+    let good = file(&folder("piped-good"), "row.toml", &preset);
+    let (code, described, _) = piped("piped-experiment", &["check", "-"], &good);
+    assert_eq!(code, Some(0), "{described}");
+    let bad = file(&folder("piped-bad"), "row.toml", &preset.replace("count = 40", "count = 0"));
+    let (code, described, _) = piped("piped-mistake", &["check", "-"], &bad);
+    assert_eq!(code, Some(2), "{described}");
+    assert!(described.contains("standard input"), "{described}");
+}
+
+#[test]
 #[cfg(unix)]
 fn an_interrupted_campaign_ends_with_a_message_and_130() {
     let out = folder("interrupted").join("records");

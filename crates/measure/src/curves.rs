@@ -121,6 +121,8 @@ pub struct Curves {
     pub ratios: Vec<WetOverDry>,
     /// Speeds at which no shot counts, in the order of cases and speeds.
     pub unmeasured: Vec<UnmeasuredSpeed>,
+    /// Whether dubious shots count.
+    pub keep_dubious: bool,
 }
 
 /// How times of flight change with speed between neighbouring speeds: a Hertz chain's exponent,
@@ -134,7 +136,7 @@ impl Curves {
         for shot in shots {
             by_name.entry(&shot.case).or_default().push(shot);
         }
-        let mut curves = Self::default();
+        let mut curves = Self { keep_dubious: grouping.keep_dubious, ..Self::default() };
         for (name, shots) in by_name {
             let (case, mut unmeasured) = Case::new(name, &shots, grouping);
             unmeasured.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
@@ -182,7 +184,7 @@ impl<'a> Timed<'a> {
             group: GroupSpeed::new(shot)?,
             speed: shot.true_speed()?,
             flight: shot.flight.as_ref().ok()?,
-            counts: grouping.keep_dubious || !shot.is_dubious(),
+            counts: shot.reasons(grouping.keep_dubious).is_empty(),
         })
     }
 }

@@ -23,20 +23,23 @@ pub(crate) struct ListEntry {
     pub case: Option<String>,
     pub speed_m_s: Option<f64>,
     pub speed_error_m_s: Option<f64>,
+    /// Whether the user says that it counts, or does not.
+    pub counts: Option<bool>,
 }
 
 /// Titles of the columns, in the order of [`ListColumns`].
-const TITLES: [&[&str]; 5] = [
+const TITLES: [&[&str]; 6] = [
     &["file", "record", "recording"],
     &["shot", "segment"],
     &["case", "oil", "section"],
     &["speed", "speed m s", "v0", "velocity"],
     &["speed error", "speed error m s", "error"],
+    &["counts", "count", "use"],
 ];
 
-/// Places of file, shot, case, speed and its error.
+/// Places of file, shot, case, speed, its error and whether a shot counts.
 struct ListColumns {
-    places: [Option<usize>; 5],
+    places: [Option<usize>; 6],
     decimal_comma: bool,
 }
 
@@ -167,15 +170,15 @@ impl ListColumns {
         let titles: Vec<String> = titles.iter().map(plain).collect();
         let place = |names: &[&str]| titles.iter().position(|title| names.contains(&&**title));
         let places = TITLES.map(place);
-        let detail =
-            "the first line must name the columns: file, and any of shot, case, speed, speed error";
+        let detail = "the first line must name the columns: file, and any of shot, case, speed, speed error, \
+             counts";
         let no_file = || MeasureError::List(detail.to_owned());
         places[0].ok_or_else(no_file)?;
         Ok(Self { places, decimal_comma })
     }
 
     fn entry(&self, row: &StringRecord, line: u64) -> Result<ListEntry, MeasureError> {
-        let [file, shot, case, speed, error] = self.places.map(|column| {
+        let [file, shot, case, speed, error, counts] = self.places.map(|column| {
             let text = row.get(column?);
             text.filter(|text| !text.is_empty())
         });
@@ -188,6 +191,11 @@ impl ListColumns {
         };
         let number = |text: &str| text.parse().map_err(|_| wrong(text, "number of a shot"));
         let no_file = || MeasureError::List(format!("line {line} names no file"));
+        let answer = |text: &str| match &*text.to_lowercase() {
+            "yes" | "y" | "true" | "1" => Ok(true),
+            "no" | "n" | "false" | "0" => Ok(false),
+            _ => Err(wrong(text, "yes or no")),
+        };
         Ok(ListEntry {
             line,
             speed_m_s: value(speed, "speed in m/s above 0", f64::MIN_POSITIVE)?,
@@ -195,6 +203,7 @@ impl ListColumns {
             shot: shot.map(number).transpose()?,
             case: case.map(str::to_owned),
             speed_error_m_s: value(error, "error of a speed in m/s", 0.0)?,
+            counts: counts.map(answer).transpose()?,
         })
     }
 

@@ -35,6 +35,8 @@ pub struct Options {
     pub list: Option<ShotList>,
     /// Standard error of speeds in m/s where neither file nor list states one.
     pub speed_error_m_s: Option<f64>,
+    /// Most flagged shots whose samples are kept.
+    pub most_flagged: usize,
 }
 
 /// How recordings that hold several shots are cut.
@@ -64,6 +66,8 @@ pub struct Measurement {
     pub unmatched: Vec<String>,
     /// The first good shot of every case, with its samples.
     pub examples: Vec<Example>,
+    /// The first flagged shots, with their samples, as many as were asked for.
+    pub flagged: Vec<Example>,
 }
 
 /// An assumption.
@@ -130,7 +134,7 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
         measurement.assign_speeds(&file, &speeds_m_s, missing as u64, options);
     }
     measurement.refused.splice(0..0, refused);
-    measurement.note_spikes();
+    measurement.note_repairs();
     if let Some(list) = &options.list {
         measurement.unmatched = list.unmatched(files, &measurement.shots);
     }
@@ -251,6 +255,9 @@ impl Measurement {
             if shot.flight.is_ok() && is_new {
                 self.examples.push(Example::new(&shot, record, range));
             }
+            if self.flagged.len() < options.most_flagged && !shot.flags().is_empty() {
+                self.flagged.push(Example::new(&shot, record, range));
+            }
             self.shots.push(shot);
         }
     }
@@ -283,15 +290,16 @@ impl Measurement {
             }
             return;
         }
-        let examples = self.examples.iter_mut().map(|example| &mut example.shot);
+        let examples = self.examples.iter_mut().chain(&mut self.flagged);
+        let examples = examples.map(|example| &mut example.shot);
         for shot in shots.into_iter().chain(examples.filter(of_file)) {
             let speed = speeds.get((number(shot) as usize).saturating_sub(1)).copied();
             shot.set_speed(speed.filter(|speed| speed.is_finite()), options);
         }
     }
 
-    /// How many samples were no part of the signal, and in which files.
-    fn note_spikes(&mut self) {
+    /// What was repaired in samples, and in which files.
+    fn note_repairs(&mut self) {
         let of = |shot: &Shot| {
             let counts = shot.doubts.iter().map(|doubt| match doubt {
                 QualityFlag::Spikes(samples) => *samples,
@@ -300,13 +308,30 @@ impl Measurement {
             counts.sum::<usize>()
         };
         let samples: usize = self.shots.iter().map(of).sum();
-        let spiked = self.shots.iter().filter(|shot| of(shot) > 0);
-        let files: Vec<PathBuf> = spiked.map(|shot| shot.file.clone()).collect();
-        let text = format!(
-            "{samples} samples of spikes in {} shots were replaced by what their neighbours say; \
-             the flags of these shots count them",
-            files.len()
+        self.note_shots(
+            |shot| of(shot) > 0,
+            |shots| {
+                format!(
+                    "{samples} samples of spikes in {shots} shots were replaced by what their \
+                 neighbours say; the flags of these shots count them"
+                )
+            },
         );
+        self.note_shots(
+            |shot| shot.doubts.contains(&QualityFlag::Drift),
+            |shots| {
+                format!(
+                    "hum or drift in {shots} shots: a baseline was fitted around their pulses and \
+                 subtracted, and stated errors hold what it leaves open"
+                )
+            },
+        );
+    }
+
+    fn note_shots(&mut self, is: impl Fn(&Shot) -> bool, text: impl Fn(usize) -> String) {
+        let such = self.shots.iter().filter(|shot| is(shot));
+        let files: Vec<PathBuf> = such.map(|shot| shot.file.clone()).collect();
+        let text = text(files.len());
         files.iter().for_each(|file| self.note(&text, file));
     }
 }

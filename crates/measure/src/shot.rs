@@ -40,6 +40,8 @@ pub struct Shot {
     pub gap_in_pulse: bool,
     /// Whether its record seems to hold more shots than this one.
     pub holds_several: bool,
+    /// Whether the list of shots says that it does not count.
+    pub excluded: bool,
 }
 
 impl Shot {
@@ -89,6 +91,7 @@ impl Shot {
             doubts,
             untriggered: record.triggered == Some(false),
             holds_several: false,
+            excluded: false,
         }
     }
 
@@ -101,6 +104,7 @@ impl Shot {
         let speed_m_s = speed_m_s.or(self.speed_m_s.map(|speed| speed.value));
         let sigma = error_m_s.unwrap_or(0.0);
         self.speed_m_s = speed_m_s.map(|value| Estimate { value, sigma });
+        self.excluded = entry.is_some_and(|entry| entry.counts == Some(false));
         if let Some(case) = entry.and_then(|entry| entry.case.clone()) {
             self.case = case;
         }
@@ -118,6 +122,24 @@ impl Shot {
         self.holds_several || self.gap_in_pulse || self.doubts.iter().any(QualityFlag::is_grave)
     }
 
+    /// Codes of the reasons why it counts in no mean, the reference's; none if it counts. Which of two
+    /// ambiguous maxima is meant is decided by all shots of a speed, and is not among them.
+    #[must_use]
+    pub fn reasons(&self, keep_dubious: bool) -> Vec<&'static str> {
+        let grave = self.doubts.iter().filter(|flag| flag.is_grave() && !keep_dubious);
+        let own = [
+            (self.excluded, "excluded"),
+            (self.flight.is_err(), "no-time"),
+            (self.true_speed().is_none(), "no-speed"),
+            (self.holds_several && !keep_dubious, "several-shots"),
+            (self.gap_in_pulse && !keep_dubious, "gap-in-pulse"),
+        ];
+        let own = own.into_iter().filter_map(|(is_so, code)| is_so.then_some(code));
+        let mut codes: Vec<&str> = own.chain(grave.map(QualityFlag::code)).collect();
+        codes.dedup();
+        codes
+    }
+
     /// Its speed, if it is above 0, below which a photogate with a large error may come.
     pub(crate) fn true_speed(&self) -> Option<Estimate> {
         self.speed_m_s.filter(|speed| speed.value > 0.0)
@@ -129,6 +151,9 @@ impl Shot {
         if let (Some(Estimate { value, .. }), None) = (self.speed_m_s, self.true_speed()) {
             let remark = format!("a measured speed of {value:.4} m/s is none: left out of curves");
             remarks.push(remark);
+        }
+        if self.excluded {
+            remarks.push("excluded by the list of shots".to_owned());
         }
         if self.holds_several {
             let remark = "several shots: cut the recording with --level or --shot-samples";

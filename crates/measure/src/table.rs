@@ -38,17 +38,23 @@ fn table(titles: Line, lines: impl Iterator<Item = Line>) -> impl Iterator<Item 
     once(joined(titles)).chain(lines.map(cells))
 }
 
-/// One line a shot.
-pub fn shots_csv(shots: &[Shot]) -> String {
-    table(shot_line(None), shots.iter().map(|shot| shot_line(Some(shot)))).collect()
+/// One line a shot, with whether it counts in these curves.
+#[must_use]
+pub fn shots_csv(shots: &[Shot], curves: &Curves) -> String {
+    shot_lines(shots, curves).collect()
+}
+
+fn shot_lines<'a>(shots: &'a [Shot], curves: &Curves) -> impl Iterator<Item = String> + use<'a> {
+    let keep = curves.keep_dubious;
+    table(shot_line(None, keep), shots.iter().map(move |shot| shot_line(Some(shot), keep)))
 }
 
 /// Writes the same line by line: recordings may have any number of shots.
 ///
 /// # Errors
 /// Those of what is written to.
-pub fn write_shots(shots: &[Shot], out: &mut dyn Write) -> io::Result<()> {
-    let mut lines = table(shot_line(None), shots.iter().map(|shot| shot_line(Some(shot))));
+pub fn write_shots(shots: &[Shot], curves: &Curves, out: &mut dyn Write) -> io::Result<()> {
+    let mut lines = shot_lines(shots, curves);
     lines.try_for_each(|line| out.write_all(line.as_bytes()))
 }
 
@@ -58,7 +64,7 @@ const PULSES: [(&str, PulseKind); 3] = [
     ("returning", PulseKind::Reflected),
 ];
 
-fn shot_line(shot: Option<&Shot>) -> Line {
+fn shot_line(shot: Option<&Shot>, keep_dubious: bool) -> Line {
     let flight = shot.and_then(|shot| shot.flight.as_ref().ok());
     let picked = |kind| flight.and_then(|flight| flight.picks.pulse(kind));
     let mut line = vec![
@@ -83,6 +89,19 @@ fn shot_line(shot: Option<&Shot>) -> Line {
     line.extend(PULSES.map(height));
     let width = |(name, kind)| number(&format!("{name}_width_s"), picked(kind).map(|p| p.width_s));
     line.extend(PULSES.map(width));
+    for (name, kind) in PULSES {
+        let pick = picked(kind);
+        line.push(number(&format!("{name}_time_s"), pick.map(|pick| pick.time_s)));
+        line.push(number(&format!("{name}_snr"), pick.map(|pick| pick.signal_to_noise)));
+        let squares = pick.and_then(|pick| pick.misfit).map(|misfit| misfit * misfit);
+        line.push(number(&format!("{name}_fit_chi2"), squares));
+    }
+    let reasons = shot.map(|shot| shot.reasons(keep_dubious));
+    line.push(words(
+        "counted",
+        reasons.as_ref().map(|none| if none.is_empty() { "yes" } else { "no" }),
+    ));
+    line.push(words("not_counted_because", reasons.map(|codes| codes.join(" "))));
     line.push(words("flags", shot.map(Shot::flags)));
     line
 }

@@ -95,9 +95,10 @@ pub(crate) fn measure<'py>(
     let arguments: Measure = parsed("measure", &options).map_err(Failed::from)?;
     // A single recording may have millions of samples.
     let (found, tables) = Job::pooled(progress, threads).run_apart(py, move |stop| {
-        let files = measuring::files(&arguments.records, arguments.shots.as_deref())?;
+        let (files, notes) = measuring::files(&arguments.records, arguments.shots.as_deref())?;
         let how = measuring::options(&arguments)?;
-        let measured = hertzchain_measure::measure(&files, &how, &Counted(stop));
+        let mut measured = hertzchain_measure::measure(&files, &how, &Counted(stop));
+        measured.notes.splice(0..0, notes);
         wanted()?;
         measuring::suits(&measured)?;
         let grouping = measuring::grouping(&arguments);
@@ -109,7 +110,7 @@ pub(crate) fn measure<'py>(
             failure.report(false).trim_start_matches("error: ").trim_end().into()
         });
         let tables = [
-            ("shots.csv", shots_csv(&measured.shots)),
+            ("shots.csv", shots_csv(&measured.shots, &curves)),
             ("speeds.csv", speeds_csv(&curves)),
             ("power-laws.csv", laws_csv(&curves)),
             ("ratios.csv", ratios_csv(&curves)),

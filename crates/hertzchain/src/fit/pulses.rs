@@ -98,7 +98,7 @@ fn records(
         ..ReadOptions::default()
     };
     let (mut good, mut refused) = (Vec::new(), Vec::new());
-    for file in files(&arguments.data, recorded.shots.as_deref())? {
+    for file in files(&arguments.data, recorded.shots.as_deref())?.0 {
         for record in read(&file, &reading) {
             wanted()?;
             let record = match record {

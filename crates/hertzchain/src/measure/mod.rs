@@ -15,12 +15,12 @@ use crate::{inference, input};
 use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_infer::Data;
 use hertzchain_measure::MeasureError;
-use hertzchain_measure::records::{Parts, ReadOptions, Rows, seekable, text};
+use hertzchain_measure::records::{Parts, ReadOptions, Rows, is_recording, seekable, text};
 use hertzchain_measure::signal::{
     Bandwidth, FindOptions, LowPass, Method, Polarity, Shape, SignalOptions,
 };
 use hertzchain_measure::{
-    Curves, Cut, Grouping, Level, Measurement, Options, Shot, ShotList, speeds_csv,
+    Curves, Cut, Grouping, Level, Measurement, Note, Options, Shot, ShotList, speeds_csv,
 };
 use std::f64::consts::TAU;
 use std::fs;
@@ -35,48 +35,71 @@ const POWER: f64 = 6.0;
 /// Full width of its fit, in full widths at half maximum.
 const FIT_WIDTHS: f64 = 2.0;
 
-/// Files, and those of folders in order of their names; the table of shots may
-/// lie among them.
+/// Files, and those of folders in order of their names, with a note on what else lies in these;
+/// the table of shots may lie among them.
 ///
 /// # Errors
 /// A folder without recordings.
-pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<Vec<PathBuf>, Failure> {
-    let mut files = Vec::new();
-    for path in given {
-        match path.is_dir() {
-            true => files.extend(inside(path)?),
-            false => files.push(seekable(path).map_err(|error| {
-                Failure::User(format!("{} can't be read: {error}", path.display()))
-            })?),
-        }
-    }
+pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Vec<Note>), Failure> {
+    let (mut files, mut notes) = (Vec::new(), Vec::new());
     let list = list.and_then(|list| list.canonicalize().ok());
-    files.retain(|file| list.is_none() || file.canonicalize().ok() != list);
-    Ok(files)
+    let is_list = |file: &PathBuf| list.is_some() && file.canonicalize().ok() == list;
+    for path in given {
+        if !path.is_dir() {
+            files.push(seekable(path).map_err(|error| {
+                Failure::User(format!("{} can't be read: {error}", path.display()))
+            })?);
+            continue;
+        }
+        let (found, mut others) = inside(path)?;
+        files.extend(found);
+        others.retain(|other| !is_list(other));
+        notes.extend(passed_over(path, &others));
+    }
+    files.retain(|file| !is_list(file));
+    Ok((files, notes))
 }
 
-/// Endings of recordings; a folder may hold other things beside.
-const ENDINGS: [&str; 9] = ["h5", "hdf5", "csv", "tsv", "txt", "npy", "npz", "wav", "tdms"];
-
-fn inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+/// Recordings in a folder, and what else is there.
+fn inside(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
     let refused = |error| Failure::User(format!("{}: {error}", folder.display()));
     let entries = fs::read_dir(folder).map_err(refused)?;
-    let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-    let is_recording = |path: &PathBuf| {
-        let ending = path.extension().and_then(|ending| ending.to_str());
-        ending.is_some_and(|ending| ENDINGS.contains(&ending.to_ascii_lowercase().as_str()))
-            && path.is_file()
+    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    let is_readme = |path: &Path| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        name.eq_ignore_ascii_case("readme")
     };
-    let mut found: Vec<PathBuf> = paths.filter(is_recording).collect();
-    found.sort();
+    let is_ours = |path: &PathBuf| path.is_file() && is_recording(path) && !is_readme(path);
+    let (found, others): (Vec<PathBuf>, Vec<PathBuf>) = paths.into_iter().partition(is_ours);
     match found.is_empty() {
         true => Err(Failure::User(format!(
-            "{}: no recordings in it (of .{})",
-            folder.display(),
-            ENDINGS.join(", .")
+            "{}: no recordings in it (of .h5, .mat, .csv, .txt, .npy, .npz, .wav, .tdms and their like)",
+            folder.display()
         ))),
-        false => Ok(found),
+        false => Ok((found, others)),
     }
+}
+
+/// Most names in a note.
+const MOST_NAMES: usize = 8;
+
+/// The note on what a folder has beside recordings, but for hidden files.
+fn passed_over(folder: &Path, others: &[PathBuf]) -> Option<Note> {
+    let name = |path: &PathBuf| {
+        let name = path.file_name()?.to_str().filter(|name| !name.starts_with('.'))?;
+        Some(if path.is_dir() { format!("{name}/") } else { name.to_owned() })
+    };
+    let names: Vec<String> = others.iter().filter_map(name).collect();
+    let more = match names.len().saturating_sub(MOST_NAMES) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let shown = names.get(..MOST_NAMES).unwrap_or(&names).join(", ");
+    (!names.is_empty()).then(|| Note {
+        text: format!("not read as recordings: {shown}{more}; a file that is named is read"),
+        files: vec![folder.to_owned()],
+    })
 }
 
 /// Times of flight of recordings: every shot, and curves against speed.
@@ -113,8 +136,9 @@ impl MeasureResult {
 /// # Errors
 /// Files and options that can't be used.
 pub fn measure(records: &[PathBuf], options: &Arguments) -> Result<MeasureResult, Failure> {
-    let files = files(records, options.shots.as_deref())?;
-    let shots = hertzchain_measure::measure(&files, &self::options(options)?, &());
+    let (files, notes) = files(records, options.shots.as_deref())?;
+    let mut shots = hertzchain_measure::measure(&files, &self::options(options)?, &());
+    shots.notes.splice(0..0, notes);
     suits(&shots)?;
     let curves = Curves::of(&shots.shots, &grouping(options));
     Ok(MeasureResult { shots, curves })
@@ -164,6 +188,7 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
             (None, false) => Cut::Plain,
         },
         measuring: measuring(&arguments.picking, rig.as_ref(), high_pass_hz)?,
+        most_flagged: 0,
         list: arguments.shots.as_deref().map(list).transpose()?,
         speed_error_m_s: arguments
             .speed_error

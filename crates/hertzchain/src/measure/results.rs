@@ -46,7 +46,8 @@ impl Serialize for Report<'_> {
         all.serialize_entry("notes", &Each(&measured.notes, note))?;
         all.serialize_entry("ratios", &Each(&curves.ratios, wet_over_dry))?;
         all.serialize_entry("refused", &Each(&measured.refused, |one| json!(one.to_string())))?;
-        all.serialize_entry("shots", &Each(&measured.shots, shot))?;
+        let counted = if curves.keep_dubious { shot_of_all } else { shot };
+        all.serialize_entry("shots", &Each(&measured.shots, counted))?;
         all.serialize_entry("unmatched", &measured.unmatched)?;
         all.end()
     }
@@ -90,6 +91,7 @@ fn shot(shot: &Shot) -> Value {
         "case": shot.case,
         "speed_m_s": shot.speed_m_s.map(estimate),
         "flags": shot.remarks(),
+        "not_counted": shot.reasons(false),
     });
     match &shot.flight {
         Err(error) => all["missing"] = json!(error.to_string()),
@@ -108,12 +110,21 @@ fn shot(shot: &Shot) -> Value {
     all
 }
 
+/// A shot where dubious ones count.
+fn shot_of_all(of: &Shot) -> Value {
+    let mut all = shot(of);
+    all["not_counted"] = json!(of.reasons(true));
+    all
+}
+
 fn picked(of: &Picked) -> Value {
     json!({
         "time_s": of.time_s,
         "time_sigma_s": of.sigma_s,
         "height_v": of.height,
         "width_s": of.width_s,
+        "signal_to_noise": of.signal_to_noise,
+        "fit_chi_square": of.misfit.map(|misfit| misfit * misfit),
     })
 }
 

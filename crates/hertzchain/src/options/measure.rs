@@ -39,6 +39,10 @@ pub struct MeasureOptions {
     /// Let clipped shots, those of doubtful order and those of which a pulse may be lost count in means
     #[arg(long)]
     pub keep_dubious: bool,
+    /// Write a page (HTML) with a plot of every flagged shot
+    #[arg(long, value_name = "FILE")]
+    #[serde(skip_serializing)]
+    pub report: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     #[serde(skip_serializing)]

@@ -8,21 +8,22 @@ use crate::records::options::{
 use crate::records::read::Raw;
 use crate::records::record::Record;
 use crate::records::stored::Head;
+use indexmap::IndexMap;
 use std::path::Path;
 use std::rc::Rc;
 
-/// Names of numbers that are an interval in s, and a rate in Hz.
+/// Names, in any case, of numbers that are an interval in s, and a rate in Hz.
 pub(crate) const INTERVALS: &[&str] =
-    &["dt", "interval", "interval_s", "sampling_interval", "sampling_interval_s"];
+    &["dt", "interval", "interval_s", "sampling_interval", "sampling_interval_s", "tinterval"];
 pub(crate) const RATES: &[&str] =
-    &["fs", "rate", "rate_hz", "sample_rate", "sampling_rate", "samplerate"];
+    &["fs", "rate", "rate_hz", "sample_rate", "sample_rate_hz", "sampling_rate", "samplerate"];
 /// Names of arrays of times without a unit, and in s.
 const TIMES: &[&str] = &["t", "time", "times"];
 const TIMES_S: &[&str] = &["time_s", "t_s"];
 /// Names of arrays of speeds in m/s, one a shot.
 const SPEEDS: &[&str] = &["speed", "speeds", "speed_m_s", "speeds_m_s", "v0"];
 /// Names, before a number, of arrays that are shots.
-const SHOTS: &[&str] = &["arr", "shot", "record", "rec", "run", "segment", "seg"];
+const SHOTS: &[&str] = &["arr", "shot", "record", "rec", "run", "segment", "seg", "event", "trial"];
 
 /// Samples that show whether numbers are times.
 pub(crate) const TIMES_SEEN: usize = 4096;
@@ -165,7 +166,8 @@ pub(crate) trait Arrays {
 /// channels.
 pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw, MeasureError> {
     let names = arrays.names();
-    let of = |known: &[&str]| names.iter().find(|name| known.contains(&last(name)));
+    let is = |known: &[&str], name: &str| known.contains(&&*last(name).to_lowercase());
+    let of = |known: &[&str]| names.iter().find(|name| is(known, name));
     let values = |known| of(known).map(|name| arrays.values(name)).transpose();
     let first = |values: Option<Vec<f64>>| values?.first().copied();
     let step = |times: Option<Vec<f64>>| mean_step(&times?);
@@ -180,13 +182,14 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw,
     };
     let unit_s = options.time_unit_s.unwrap_or(1.0);
     let mut interval = stated_s.or(step(times).map(|step| step * unit_s));
-    let speeds = values(SPEEDS)?.unwrap_or_default();
+    let all_speeds = names.iter().filter(|name| is(SPEEDS, name)).map(|name| arrays.values(name));
+    let speeds = all_speeds.collect::<Result<Vec<_>, _>>()?.concat();
     let known = [INTERVALS, RATES, TIMES, TIMES_S, SPEEDS].concat();
     let mut samples = names.clone();
     samples.retain(|name| {
         // Single numbers beside them are whatever they are.
-        let several = || arrays.shape(name).map_or(true, |shape| !shape.is_empty());
-        !known.contains(&last(name)) && several()
+        let single = |shape: Vec<usize>| shape.iter().all(|size| *size == 1);
+        !is(&known, name) && !arrays.shape(name).is_ok_and(single)
     });
     let mut read = options.clone();
     if let Some((others, step)) = time_column(&*arrays, &samples, options) {
@@ -245,7 +248,7 @@ fn time_column(
 }
 
 /// The last part of a path.
-fn last(name: &str) -> &str {
+pub(crate) fn last(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
@@ -274,6 +277,13 @@ fn of_samples(
         let recordings = rows(&**arrays, one, options)?;
         return Ok((arrays.records(one, interval_s, options)?, recordings));
     }
+    if let Some(groups) = shot_groups(&samples) {
+        let recordings = groups.len();
+        return Ok((
+            group_by_group(arrays.clone(), groups, interval_s, options.clone()),
+            recordings,
+        ));
+    }
     let are_shots = samples.iter().all(|name| is_shot(last(name)));
     if are_shots && options.rows != Rows::Channels && options.channels.is_empty() {
         let each = samples.iter().map(|name| rows(&**arrays, name, options));
@@ -288,8 +298,9 @@ fn of_samples(
     let chosen = chosen(file, &samples, options)?;
     let chosen: Vec<&String> = chosen.iter().filter_map(|i| samples.get(*i)).collect();
     for name in &chosen {
-        // Tables may as well be of different chains.
-        if options.channels.is_empty() && arrays.shape(name)?.len() > 1 {
+        // Tables may as well be of different chains; MATLAB's columns have a second axis of size 1.
+        let axes = arrays.shape(name)?.into_iter().filter(|size| *size > 1);
+        if options.channels.is_empty() && axes.count() > 1 {
             return Err(ambiguous(file, &samples));
         }
     }
@@ -299,10 +310,55 @@ fn of_samples(
     Ok((records, recordings))
 }
 
+/// Whether a name is that of a shot and its number.
 fn is_shot(name: &str) -> bool {
-    let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    let (stem, number) = numbered_name(name);
     let word = stem.trim_end_matches(['_', '-', ' ']).to_lowercase();
-    stem.len() < name.len() && SHOTS.contains(&word.as_str())
+    number.is_some() && SHOTS.contains(&word.as_str())
+}
+
+fn numbered_name(name: &str) -> (&str, Option<u64>) {
+    let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    (stem, name[stem.len()..].parse().ok())
+}
+
+/// Arrays of each group, in the order of the groups' numbers, where every group is a shot: more
+/// than one, called so or only numbered, with arrays of the same names.
+fn shot_groups(samples: &[String]) -> Option<Vec<Vec<String>>> {
+    let mut groups: IndexMap<&str, Vec<&str>> = IndexMap::new();
+    for name in samples {
+        let (group, own) = name.rsplit_once('/')?;
+        groups.entry(group).or_default().push(own);
+    }
+    let is_shot = |group: &&str| is_shot(last(group)) || numbered_name(last(group)).0.is_empty();
+    let alike = groups.values().all(|own| *own == groups[0]);
+    if groups.len() < 2 || !alike || !groups.keys().all(is_shot) {
+        return None;
+    }
+    groups.sort_by_key(|group, _| numbered_name(group).1);
+    let path = |group: &str, own: &[&str]| own.iter().map(|own| format!("{group}/{own}")).collect();
+    Some(groups.iter().map(|(group, own)| path(group, own)).collect())
+}
+
+/// The records of one group after the other.
+fn group_by_group(
+    arrays: Rc<dyn Arrays>,
+    groups: Vec<Vec<String>>,
+    interval_s: f64,
+    options: ReadOptions,
+) -> Raw {
+    numbered_records(groups.into_iter().flat_map(move |group| {
+        let records = of_samples(&arrays, group, interval_s, &options).map(|opened| opened.0);
+        records.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
+    }))
+}
+
+fn numbered_records(records: impl Iterator<Item = Result<Record, MeasureError>> + 'static) -> Raw {
+    Box::new((1..).zip(records).map(|(number, record)| {
+        let mut record = record?;
+        record.shot = Some(number);
+        Ok(record)
+    }))
 }
 
 /// Arrays of which each holds one channel of every shot.
@@ -340,7 +396,7 @@ fn joined(
             let detail = format!("{name:?} has columns of its own: choose it alone");
             return Err(unlike(&detail));
         };
-        channel.name = name;
+        channel.name = last(&name).to_owned();
         joined.get_or_insert(record).channels.push(channel);
     }
     joined.ok_or_else(|| unlike("without channels"))
@@ -353,14 +409,9 @@ fn one_by_one(
     interval_s: f64,
     options: ReadOptions,
 ) -> Raw {
-    let records = samples.into_iter().flat_map(move |name| {
+    numbered_records(samples.into_iter().flat_map(move |name| {
         let opened = arrays.records(&name, interval_s, &options);
         opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
-    });
-    Box::new((1..).zip(records).map(|(number, record)| {
-        let mut record = record?;
-        record.shot = Some(number);
-        Ok(record)
     }))
 }
 

@@ -7,8 +7,13 @@ use crate::records::options::ReadOptions;
 use crate::records::read::Raw;
 use crate::records::record::{Samples, converter_range_v};
 use crate::records::series;
-use crate::records::stored::SampleSource;
-use rust_hdf5::{DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
+use crate::records::stored::{NumberKind, SampleSource, StoredNumber};
+use indexmap::IndexSet;
+use rust_hdf5::format::FormatContext;
+use rust_hdf5::format::messages::attribute::AttributeMessage;
+use rust_hdf5::{ByteOrder, DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -32,30 +37,95 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureErr
     if series::is_series(&open) {
         return series::open(file, &open, options);
     }
-    let mut names = open.dataset_names();
-    names.retain(|name| {
-        let kind = open.dataset(name).and_then(|dataset| dataset.datatype());
-        matches!(
-            kind,
-            Ok(DatatypeMessage::FixedPoint { .. } | DatatypeMessage::FloatingPoint { .. })
-        )
-    });
+    let mut names: IndexSet<String> = open.dataset_names().into_iter().collect();
+    names.retain(|name| is_numbers(&open, name));
     if names.is_empty() {
         return Err(MeasureError::empty(file_name(file)));
     }
-    let file = file.to_owned();
-    arrays::open(Rc::new(Datasets { file, open, names }), options)
+    let by_matlab = beginning(file, MATLAB.len() as u64);
+    let by_matlab = by_matlab.is_ok_and(|bytes| bytes == MATLAB);
+    arrays::open(Rc::new(Datasets { file: file.to_owned(), open, names, by_matlab }), options)
+}
+
+/// How MATLAB's user block begins; its columns are HDF5's rows, its texts whole numbers.
+const MATLAB: &[u8] = b"MATLAB 7.3";
+const CLASS: &str = "MATLAB_class";
+/// Its classes that are no numbers, and groups for its own use.
+const NO_NUMBERS: &[&str] = &["char", "cell", "struct", "logical", "function_handle"];
+const INTERNAL: &[&str] = &["#refs#", "#subsystem#"];
+
+fn is_numbers(open: &H5File, name: &str) -> bool {
+    let Ok(dataset) = open.dataset(name) else { return true };
+    let class = dataset.attr(CLASS).and_then(|class| class.read_string());
+    let no_numbers = class.is_ok_and(|class| NO_NUMBERS.contains(&class.as_str()));
+    let kind = dataset.datatype();
+    !no_numbers
+        && !INTERNAL.iter().any(|group| name.trim_start_matches('/').starts_with(group))
+        && matches!(
+            kind,
+            Ok(DatatypeMessage::FixedPoint { .. } | DatatypeMessage::FloatingPoint { .. })
+        )
+}
+
+fn beginning(file: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(file)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Bytes of a file in which attributes of groups are searched for.
+const SEARCHED: u64 = 1 << 26;
+
+/// The number that attributes of this name have, whatever they are of, if it is one. The library
+/// reads numbers of datasets only, so messages are searched for by the name: it stands 8 bytes
+/// after a message's begin, 9 in version 3.
+fn attribute_anywhere(bytes: &[u8], name: &str) -> Option<f64> {
+    let ended = [name.as_bytes(), b"\0"].concat();
+    let places = memmem(bytes, &ended);
+    let value = |at: usize| {
+        let message = |before| {
+            let message = bytes.get(at.checked_sub(before)?..)?;
+            let found = AttributeMessage::decode(message, &FormatContext::default_v3()).ok()?.0;
+            (found.name == name).then(|| scalar(&found))?
+        };
+        message(8).or_else(|| message(9))
+    };
+    let mut values = places.filter_map(value);
+    let first = values.next()?;
+    values.all(|value| value == first).then_some(first)
+}
+
+fn memmem<'a>(bytes: &'a [u8], wanted: &'a [u8]) -> impl Iterator<Item = usize> + 'a {
+    let first = wanted.first().copied();
+    let starts = bytes.iter().enumerate().filter(move |(_, byte)| Some(**byte) == first);
+    starts.map(|(at, _)| at).filter(move |at| bytes[*at..].starts_with(wanted))
+}
+
+fn scalar(of: &AttributeMessage) -> Option<f64> {
+    let (kind, order) = match of.datatype {
+        DatatypeMessage::FloatingPoint { size: 4, byte_order, .. } => (NumberKind::F32, byte_order),
+        DatatypeMessage::FloatingPoint { size: 8, byte_order, .. } => (NumberKind::F64, byte_order),
+        DatatypeMessage::FixedPoint { size: 4, byte_order, .. } => (NumberKind::I32, byte_order),
+        DatatypeMessage::FixedPoint { size: 8, byte_order, .. } => (NumberKind::I64, byte_order),
+        _ => return None,
+    };
+    let number = StoredNumber::plain(kind, order == ByteOrder::BigEndian);
+    number.scaled(&of.data).first().copied()
 }
 
 /// A dataset whose numbers are in this file. What lies in other files could be any file of the
 /// machine: external links, external storage and virtual datasets are refused.
 pub(crate) fn dataset(open: &H5File, name: &str) -> Result<H5Dataset, Hdf5Error> {
+    dataset_of(open, name, open.dataset_names().iter().any(|known| known == name))
+}
+
+fn dataset_of(open: &H5File, name: &str, is_there: bool) -> Result<H5Dataset, Hdf5Error> {
     let refused = |why: &str| {
         Hdf5Error::InvalidState(format!(
             "{name:?} {why}, which are not read: copy its numbers into this file"
         ))
     };
-    if !open.dataset_names().iter().any(|known| known == name) {
+    if !is_there {
         return Err(refused("is missing, or one of the links to other files"));
     }
     let dataset = open.dataset(name)?;
@@ -117,12 +187,22 @@ pub(crate) fn unit(name: &str) -> &'static str {
 struct Datasets {
     file: PathBuf,
     open: H5File,
-    names: Vec<String>,
+    names: IndexSet<String>,
+    by_matlab: bool,
 }
 
 impl Datasets {
     fn dataset(&self, name: &str) -> Result<H5Dataset, MeasureError> {
-        dataset(&self.open, name).map_err(|error| refused(&self.file, name, &error))
+        let found = dataset_of(&self.open, name, self.names.contains(name));
+        found.map_err(|error| refused(&self.file, name, &error))
+    }
+
+    /// Axes in the order of the program that wrote them.
+    fn axes(&self, mut shape: Vec<usize>) -> Vec<usize> {
+        if self.by_matlab {
+            shape.reverse();
+        }
+        shape
     }
 }
 
@@ -137,11 +217,11 @@ impl Arrays for Datasets {
     }
 
     fn names(&self) -> Vec<String> {
-        self.names.clone()
+        self.names.iter().cloned().collect()
     }
 
     fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError> {
-        self.dataset(name).map(|dataset| dataset.shape())
+        self.dataset(name).map(|dataset| self.axes(dataset.shape()))
     }
 
     fn values(&self, name: &str) -> Result<Vec<f64>, MeasureError> {
@@ -156,7 +236,7 @@ impl Arrays for Datasets {
         options: &ReadOptions,
     ) -> Result<Raw, MeasureError> {
         let dataset = self.dataset(name)?;
-        let shape = dataset.shape();
+        let shape = self.axes(dataset.shape());
         let part = Some(name.to_owned());
         let table = SampleTable::new(&self.file, part, &shape, interval_s, options)?;
         let slices = Slices {
@@ -165,6 +245,7 @@ impl Arrays for Datasets {
             dataset,
             axes: table.axes,
             chosen: table.chosen,
+            by_matlab: self.by_matlab,
         };
         Ok(table.head.records(options.parts, slices))
     }
@@ -175,7 +256,13 @@ impl Arrays for Datasets {
             let values = |of: &H5Dataset| names.iter().find_map(|name| attribute(of, name).ok());
             datasets.into_iter().find_map(|dataset| values(&dataset))
         };
-        number(INTERVALS).or_else(|| number(RATES).map(f64::recip))
+        let bytes = || beginning(&self.file, SEARCHED).unwrap_or_default();
+        let of_groups = |bytes: Vec<u8>| {
+            let first = |names: &[&str]| names.iter().find_map(|n| attribute_anywhere(&bytes, n));
+            first(INTERVALS).or_else(|| first(RATES).map(f64::recip))
+        };
+        let of_datasets = number(INTERVALS).or_else(|| number(RATES).map(f64::recip));
+        of_datasets.or_else(|| of_groups(bytes())).filter(|step| step.is_finite() && *step > 0.0)
     }
 }
 
@@ -186,6 +273,7 @@ struct Slices {
     dataset: H5Dataset,
     axes: Axes,
     chosen: Vec<usize>,
+    by_matlab: bool,
 }
 
 impl SampleSource for Slices {
@@ -216,6 +304,7 @@ impl Slices {
             (Some(self.axes.time), from, count),
         ] {
             if let Some(axis) = axis {
+                let axis = if self.by_matlab { rank - 1 - axis } else { axis };
                 (starts[axis], counts[axis]) = (start, count);
             }
         }

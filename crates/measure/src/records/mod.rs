@@ -1,12 +1,14 @@
 //! Records on disk: the samples of a rig's sensors.
 //!
 //! Writes series of a virtual campaign as HDF5 ([`SeriesWriter`]) and reads recordings of any
-//! program, one record at a time ([`read`]): HDF5, text, NPY and NPZ, WAV and LabVIEW TDMS.
+//! program, one record at a time ([`read`]): HDF5, MATLAB's, text, NPY and NPZ, WAV and LabVIEW TDMS.
 
+mod archive;
 mod arrays;
 mod files;
 mod hdf5;
 mod interval;
+mod mat;
 mod numpy;
 mod options;
 mod read;
@@ -23,7 +25,7 @@ pub use files::{
 };
 pub use hdf5::ColumnFile;
 pub use options::{Parts, ReadOptions, Rows};
-pub use read::{Records, read};
+pub use read::{Records, is_recording, read};
 pub(crate) use record::extremes;
 pub use record::{Channel, Record};
 pub use series::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};

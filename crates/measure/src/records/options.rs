@@ -1,6 +1,7 @@
 //! Options of reading, and the choice of channels.
 
 use crate::error::{MeasureError, file_name};
+use crate::records::arrays::last;
 use std::path::Path;
 
 /// How recordings are read where they do not state it themselves.
@@ -146,13 +147,14 @@ fn has_word(title: &str, beginnings: &[&str]) -> bool {
     words.any(|word| beginnings.iter().any(|begin| word.starts_with(begin)))
 }
 
-/// By name, by name in any case, or by number from 1.
+/// By name, by name in any case, by the last part of a path, or by number from 1.
 fn position(names: &[String], wanted: &str) -> Option<usize> {
     let folded = |text: &str| text.trim().to_lowercase();
     let number = || wanted.parse().ok().and_then(|n: usize| n.checked_sub(1));
     let exact = names.iter().position(|name| name == wanted);
     exact
         .or_else(|| names.iter().position(|name| folded(name) == folded(wanted)))
+        .or_else(|| names.iter().position(|name| folded(last(name)) == folded(wanted)))
         .or_else(|| number().filter(|index| *index < names.len()))
 }
 

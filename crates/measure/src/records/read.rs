@@ -4,7 +4,7 @@ use crate::error::{MeasureError, file_name};
 use crate::records::options::{Parts, ReadOptions};
 use crate::records::record::{Channel, Record, extremes};
 use crate::records::stored::from_sample;
-use crate::records::{hdf5, numpy, series, tdms, text, wav};
+use crate::records::{hdf5, mat, numpy, series, tdms, text, wav};
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
@@ -21,20 +21,46 @@ const PROBE: u64 = 4096;
 /// Most samples of a channel that are not finite, as a share.
 const MOST_FILLED: f64 = 0.01;
 
-/// Name of a format, how its files begin, their extensions, and its reader.
-type Format = (&'static str, &'static [u8], &'static [&'static str], Open);
+/// Name of a format, whether a file that begins so has it, its extensions, and its reader.
+type Format = (&'static str, fn(&[u8]) -> bool, &'static [&'static str], Open);
 type Open = fn(&Path, &ReadOptions) -> Result<Raw, MeasureError>;
 
 /// All formats; text, which no bytes begin, last.
 #[rustfmt::skip]
-const FORMATS: [Format; 6] = [
-    ("HDF5", b"\x89HDF\r\n\x1a\n", &["h5", "hdf5", "hdf"], hdf5::open),
-    ("a NumPy array", b"\x93NUMPY", &["npy"], numpy::open_npy),
-    ("a ZIP archive, as NPZ files are", b"PK\x03\x04", &["npz"], numpy::open_npz),
-    ("RIFF WAVE", b"RIFF", &["wav", "wave"], wav::open),
-    ("TDMS", b"TDSm", &["tdms"], tdms::open),
-    ("text", b"", &["csv", "tsv", "txt", "asc", "prn"], text::open),
+const FORMATS: [Format; 7] = [
+    ("HDF5", is_hdf5, &["h5", "hdf5", "hdf", "mat"], hdf5::open),
+    ("a NumPy array", |it| it.starts_with(b"\x93NUMPY"), &["npy"], numpy::open_npy),
+    ("a ZIP archive, as NPZ files are", |it| it.starts_with(b"PK\x03\x04"), &["npz"], numpy::open_npz),
+    ("RIFF WAVE", |it| it.starts_with(b"RIFF"), &["wav", "wave"], wav::open),
+    ("TDMS", |it| it.starts_with(b"TDSm"), &["tdms"], tdms::open),
+    ("MATLAB's", mat::is_mat, &["mat"], mat::open),
+    ("text", is_text, &["csv", "tsv", "txt", "asc", "prn", "lvm", "dat"], text::open),
 ];
+
+/// Binary files of instruments that are not read: what is in their first bytes from one on, the
+/// extension, and whose they are.
+#[rustfmt::skip]
+const VENDORS: [(usize, &[u8], &str, &str); 12] = [
+    (2, b":WFM#", "wfm", "a Tektronix oscilloscope"),
+    (0, b":WFM", "isf", "a Tektronix oscilloscope"),
+    (0, b"BYT_N", "isf", "a Tektronix oscilloscope"),
+    (11, b"WAVEDESC", "trc", "a LeCroy oscilloscope"),
+    (0, b"WAVEDESC", "trc", "a LeCroy oscilloscope"),
+    (0, b"AG", "bin", "a Keysight oscilloscope"),
+    (0, b"RG0", "bin", "a Rigol oscilloscope"),
+    (0, b"\xa5\xa5", "wfm", "a Rigol oscilloscope"),
+    (0, b"\x01\xff\xff\xff", "wfm", "a Rigol oscilloscope"),
+    (0, b"", "psdata", "PicoScope"),
+    (0, b"", "wdf", "a Yokogawa oscilloscope"),
+    (0, b"", "trc", "a LeCroy oscilloscope"),
+];
+
+/// Whether a file's extension is one of recordings that are read.
+#[must_use]
+pub fn is_recording(file: &Path) -> bool {
+    let extension = extension(file);
+    FORMATS.iter().any(|format| format.2.contains(&&*extension))
+}
 
 /// The records of a file, one at a time: a file larger than memory is never read whole.
 ///
@@ -48,7 +74,7 @@ pub struct Records {
     count: usize,
 }
 
-/// Reads the records of a file: HDF5, text, NPY, NPZ, WAV or TDMS, by its content.
+/// Reads the records of a file: HDF5, MATLAB's, text, NPY, NPZ, WAV or TDMS, by its content.
 ///
 /// A file that cannot be read at all gives one error and nothing else.
 pub fn read(file: &Path, options: &ReadOptions) -> Records {
@@ -228,23 +254,47 @@ fn format_of(file: &Path) -> Result<Open, MeasureError> {
     if bytes.is_empty() {
         return Err(MeasureError::empty(file_name(file)));
     }
-    let found = FORMATS.iter().find(|format| match format.1 {
-        b"" => is_text(&bytes),
-        magic => bytes.starts_with(magic),
-    });
-    let extension = file.extension().unwrap_or_default().to_string_lossy();
-    let extension = extension.to_ascii_lowercase();
-    let promised = FORMATS.iter().find(|format| format.2.contains(&&*extension));
-    let detail = match (found, promised) {
-        (Some(found), None) => return Ok(found.3),
-        (Some(found), Some(promised)) if found.0 == promised.0 => return Ok(found.3),
-        (None, None) => "is none of HDF5, CSV or other text, NPY, NPZ, WAV and TDMS".to_owned(),
-        (found, Some(_)) => {
+    let found = FORMATS.iter().find(|format| format.1(&bytes));
+    let extension = extension(file);
+    let promises = |format: &Format| format.2.contains(&&*extension);
+    let is_promised = FORMATS.iter().any(promises);
+    let foreign = vendor(&bytes, &extension).filter(|_| found.is_none());
+    let detail = match (found, foreign) {
+        (Some(found), _) if promises(found) || !is_promised => return Ok(found.3),
+        (None, Some(detail)) => detail,
+        (None, None) if !is_promised => {
+            "is none of HDF5, MATLAB's, CSV or other text, NPY, NPZ, WAV and TDMS".to_owned()
+        }
+        (found, _) => {
             let content = found.map_or("something else", |found| found.0);
             format!("is called .{extension} but holds {content}; give it its right ending")
         }
     };
     Err(MeasureError::Format(file_name(file), detail))
+}
+
+fn extension(file: &Path) -> String {
+    file.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
+/// Why a binary file of an instrument is not read.
+fn vendor(bytes: &[u8], extension: &str) -> Option<String> {
+    let is_such = |(from, holds, ending, _): &&(usize, &[u8], &str, &str)| match holds.len() {
+        0 => *ending == extension,
+        _ => bytes.get(*from..).is_some_and(|bytes| bytes.starts_with(holds)),
+    };
+    let (.., ending, whose) = VENDORS.iter().find(is_such)?;
+    Some(format!(
+        "is a binary file (.{ending}) of {whose}, which is not read; save the waveform there as CSV, \
+         or export it as MAT, HDF5 or NPY"
+    ))
+}
+
+/// Also behind a user block, whose sizes are powers of 2.
+fn is_hdf5(bytes: &[u8]) -> bool {
+    let magic = b"\x89HDF\r\n\x1a\n";
+    let mut blocks = [0, 512, 1024, 2048].into_iter();
+    blocks.any(|at| bytes.get(at..).is_some_and(|bytes| bytes.starts_with(magic)))
 }
 
 fn is_text(bytes: &[u8]) -> bool {

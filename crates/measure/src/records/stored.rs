@@ -98,6 +98,40 @@ impl StoredNumber {
     }
 }
 
+/// A reader over a header in either byte order; `None` beyond its end.
+pub(super) struct HeaderBytes<'a> {
+    pub left: &'a [u8],
+    pub big_endian: bool,
+}
+
+impl<'a> HeaderBytes<'a> {
+    pub(super) fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (taken, left) = self.left.split_at_checked(count)?;
+        self.left = left;
+        Some(taken)
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let mut bytes: [u8; N] = self.take(N)?.try_into().ok()?;
+        if self.big_endian {
+            bytes.reverse();
+        }
+        Some(bytes)
+    }
+
+    pub(super) fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    pub(super) fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    pub(super) fn size(&mut self) -> Option<usize> {
+        usize::try_from(self.u64()?).ok()
+    }
+}
+
 /// A number of half precision: a sign, five bits of exponent, ten of fraction (IEEE 754).
 fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 0 { 1.0 } else { -1.0 };

@@ -7,7 +7,7 @@ use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
 use crate::records::stored::{
-    Head, NumberKind, SampleRuns, StoredChannel, StoredNumber, StoredTable,
+    Head, HeaderBytes, NumberKind, SampleRuns, StoredChannel, StoredNumber, StoredTable,
 };
 use indexmap::IndexMap;
 use std::collections::HashMap;
@@ -247,39 +247,7 @@ fn width(code: u32) -> Option<usize> {
     }
 }
 
-/// A reader over metadata in either byte order; `None` beyond its end.
-struct Bytes<'a> {
-    left: &'a [u8],
-    big_endian: bool,
-}
-
-impl<'a> Bytes<'a> {
-    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, left) = self.left.split_at_checked(count)?;
-        self.left = left;
-        Some(taken)
-    }
-
-    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let mut bytes: [u8; N] = self.take(N)?.try_into().ok()?;
-        if self.big_endian {
-            bytes.reverse();
-        }
-        Some(bytes)
-    }
-
-    fn u32(&mut self) -> Option<u32> {
-        self.array().map(u32::from_le_bytes)
-    }
-
-    fn u64(&mut self) -> Option<u64> {
-        self.array().map(u64::from_le_bytes)
-    }
-
-    fn size(&mut self) -> Option<usize> {
-        usize::try_from(self.u64()?).ok()
-    }
-
+impl HeaderBytes<'_> {
     fn text(&mut self) -> Option<String> {
         let length = self.u32()? as usize;
         let bytes = self.take(length)?;
@@ -330,7 +298,7 @@ impl Values {
 
 impl Card {
     /// The layout after an index's `kind`; `None` if it is not one.
-    fn parse(bytes: &mut Bytes<'_>, kind: u32) -> Option<Self> {
+    fn parse(bytes: &mut HeaderBytes<'_>, kind: u32) -> Option<Self> {
         let (_type, _dimension) = (bytes.u32()?, bytes.u32()?);
         let count = bytes.size()?;
         let mut first = None;
@@ -378,7 +346,7 @@ struct Lead {
 
 impl Lead {
     fn parse(bytes: &[u8]) -> Option<Self> {
-        let mut bytes = Bytes { left: bytes.strip_prefix(b"TDSm")?, big_endian: false };
+        let mut bytes = HeaderBytes { left: bytes.strip_prefix(b"TDSm")?, big_endian: false };
         let flags = bytes.u32()?;
         bytes.big_endian = flags & BIG_ENDIAN != 0;
         let _version = bytes.u32()?;
@@ -451,7 +419,7 @@ fn read_at(opened: &mut File, at: u64, count: u64) -> io::Result<Vec<u8>> {
 impl TdmsWalk {
     /// One segment's list of objects; `None` if it is cut short.
     fn metadata(&mut self, lead: &Lead, metadata: &[u8]) -> Option<()> {
-        let mut bytes = Bytes { left: metadata, big_endian: lead.has(BIG_ENDIAN) };
+        let mut bytes = HeaderBytes { left: metadata, big_endian: lead.has(BIG_ENDIAN) };
         if lead.has(NEW_LIST) {
             self.objects.clear();
         }
@@ -473,7 +441,7 @@ impl TdmsWalk {
     }
 
     /// Where an object's samples are: none, as before, or stated now.
-    fn values(&self, bytes: &mut Bytes<'_>, path: &str) -> Option<Option<Values>> {
+    fn values(&self, bytes: &mut HeaderBytes<'_>, path: &str) -> Option<Option<Values>> {
         Some(match bytes.u32()? {
             u32::MAX => None,
             0 => self.known.get(path).cloned().flatten(),

@@ -3,11 +3,12 @@
 use std::borrow::Cow;
 
 use crate::error::MeasureError;
+use crate::signal::drift::Detrended;
 use crate::signal::find::conditioned_pulses;
 use crate::signal::pick::pick;
 use crate::signal::{
     Bandwidth, Channels, CompetingPick, Estimate, FindOptions, Found, LowPass, Method, Picked,
-    Picks, Polarity, PulseKind, QualityFlag, Systematic, invert_high_pass, normalisation,
+    Picks, Polarity, Pulse, PulseKind, QualityFlag, Systematic, invert_high_pass, normalisation,
     without_spikes,
 };
 
@@ -52,18 +53,26 @@ pub fn measure(
     let count = if channels.is_summed() { 1 } else { 2 };
     let repaired: Vec<_> = raw[..count].iter().map(|raw| without_spikes(raw)).collect();
     let spikes: usize = repaired.iter().map(|(_, spikes)| spikes.len()).sum();
-    let conditioned: Vec<Cow<'_, [f64]>> = repaired
+    let mut conditioned: Vec<Cow<'_, [f64]>> = repaired
         .iter()
         .zip(polarities)
         .map(|((samples, _), polarity)| options.condition(samples, interval_s, polarity))
         .collect::<Result<_, _>>()?;
     let recorded: Vec<&[f64]> = repaired.iter().map(|(samples, _)| &samples[..]).collect();
-    let conditioned: Vec<&[f64]> = conditioned.iter().map(|samples| &samples[..]).collect();
-    let [recorded, channels] = [&recorded, &conditioned].map(|of| match of[..] {
-        [sensor, wall] => Channels::Separate { sensor, wall },
-        _ => Channels::Summed(of[0]),
-    });
-    let mut found = conditioned_pulses(channels, recorded, find)?;
+    let recorded = channels_of(&recorded);
+    let mut found = conditioned_pulses(channels_of(&conditioned), recorded, find)?;
+    let drifts: Vec<Option<Detrended>> =
+        (0..count).map(|of| drift(&found, &conditioned, of)).collect();
+    let has_drift = drifts.iter().any(Option::is_some);
+    if has_drift {
+        for (samples, drift) in conditioned.iter_mut().zip(&drifts) {
+            if let Some(drift) = drift {
+                *samples = Cow::Borrowed(&drift.samples);
+            }
+        }
+        found = conditioned_pulses(channels_of(&conditioned), recorded, find)?;
+    }
+    let channels = channels_of(&conditioned);
     if let Some(low_pass) = options.low_pass {
         // How far a clipped top's corners reach.
         let reach = (0.5 / (low_pass.cutoff_hz * interval_s)).ceil() as usize;
@@ -75,12 +84,46 @@ pub fn measure(
     let ranges = if changed { [None; 2] } else { find.ranges(channels) };
     let corrections = (ranges, options.bandwidth);
     let picks = pick(channels, interval_s, &found, &options.method, corrections);
-    let flight = picks.map(Picks::flight);
+    let flight = picks.map(|picks| with_drift(picks, &drifts, interval_s).flight());
     let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     let not_picked = none_reflected && found.reflected.is_some();
     found.flag(not_picked.then_some(QualityFlag::NotPicked(PulseKind::Reflected)));
     found.flag((spikes > 0).then_some(QualityFlag::Spikes(spikes)));
+    found.flag(has_drift.then_some(QualityFlag::Drift));
     Ok(Measured { found, flight })
+}
+
+fn channels_of<T: AsRef<[f64]>>(samples: &[T]) -> Channels<'_> {
+    match samples {
+        [sensor, wall] => Channels::Separate { sensor: sensor.as_ref(), wall: wall.as_ref() },
+        one => Channels::Summed(one.first().map_or(&[], AsRef::as_ref)),
+    }
+}
+
+/// The slow baseline of a channel of a shot whose pulses were found, if it has one.
+fn drift(found: &Found, channels: &[Cow<'_, [f64]>], which: usize) -> Option<Detrended> {
+    let (incident, wall) = (found.incident?, found.wall?);
+    let is_here =
+        |pulse: &&Pulse| channels.len() == 1 || which == usize::from(pulse.kind == PulseKind::Wall);
+    let pulses: Vec<Pulse> = found.pulses().filter(is_here).copied().collect();
+    let time = wall.at.checked_sub(incident.at)?;
+    Detrended::new(&channels[which], &pulses, time as f64)
+}
+
+/// Picks with what their baselines leave open.
+fn with_drift(mut picks: Picks, drifts: &[Option<Detrended>], interval_s: f64) -> Picks {
+    let last = drifts.len() - 1;
+    let widen = |pick: &mut Picked, which: usize| {
+        if let Some(drift) = &drifts[which.min(last)] {
+            let [at, width] = [pick.time_s, pick.width_s].map(|s| s / interval_s);
+            let error_s = drift.time_error(at, pick.height, width) * interval_s;
+            pick.sigma_s = pick.sigma_s.hypot(error_s);
+        }
+    };
+    widen(&mut picks.incident, 0);
+    widen(&mut picks.wall, 1);
+    picks.reflected.iter_mut().for_each(|back| widen(back, 0));
+    picks
 }
 
 impl SignalOptions {

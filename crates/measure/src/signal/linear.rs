@@ -272,7 +272,7 @@ pub(crate) fn powers(u: f64) -> Row {
 }
 
 /// From the row of powers that of their derivatives, 0, 1, 2 u, 3 u², and so on.
-fn differentiated(below: &Row) -> Row {
+pub(crate) fn differentiated(below: &Row) -> Row {
     std::array::from_fn(|k| k.checked_sub(1).map_or(0.0, |j| k as f64 * below[j]))
 }
 

@@ -26,6 +26,7 @@
 //! ```
 
 mod baseline;
+mod drift;
 mod filters;
 mod find;
 mod flight;

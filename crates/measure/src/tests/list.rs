@@ -66,3 +66,12 @@ fn mistakes_are_told_with_their_line() {
     let error = ShotList::parse("file,speed\n\na.csv,fast\n").unwrap_err();
     assert!(error.to_string().contains("line 3"), "{error}");
 }
+
+#[test]
+fn a_list_excludes_shots_by_yes_and_no() {
+    let list = ShotList::parse("file,counts\na.csv,no\nb.csv,Yes\nc.csv,\n").unwrap();
+    let counts = |file: &str| list.find(Path::new(file), None).unwrap().counts;
+    assert_eq!(["a.csv", "b.csv", "c.csv"].map(counts), [Some(false), Some(true), None]);
+    let wrong = ShotList::parse("file,counts\na.csv,perhaps\n");
+    assert!(matches!(wrong, Err(MeasureError::List(ref why)) if why.contains("yes or no")));
+}

@@ -6,6 +6,7 @@ mod clipping;
 mod common;
 mod competing;
 mod crosstalk;
+mod drift;
 mod droop;
 #[path = "common/dry.rs"]
 mod dry;

@@ -11,6 +11,7 @@ fn measured(shots: usize) -> Measurement {
         height: 1.0,
         height_sigma: 1e-3,
         width_s: 46e-6,
+        signal_to_noise: 100.0,
         misfit: None,
     };
     let at = |time_s| Picked { time_s, ..picked };
@@ -34,6 +35,7 @@ fn measured(shots: usize) -> Measurement {
         gaps: None,
         gap_in_pulse: false,
         holds_several: false,
+        excluded: false,
     };
     Measurement {
         shots: vec![shot; shots],

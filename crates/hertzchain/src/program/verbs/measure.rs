@@ -1,6 +1,7 @@
 //! `hertzchain measure`: records of a rig to times of flight.
 
 mod pictures;
+mod report;
 mod summary;
 
 use crate::measure;
@@ -16,20 +17,25 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let files = measure::files(&arguments.records, arguments.shots.as_deref())?;
-    let options = measure::options(arguments)?;
+    let (files, notes) = measure::files(&arguments.records, arguments.shots.as_deref())?;
+    let most_flagged = if arguments.report.is_some() { report::MOST } else { 0 };
+    let options = Options { most_flagged, ..measure::options(arguments)? };
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let bar = bar();
-    let measured = hertzchain_measure::measure(&files, &options, &bar);
+    let mut measured = hertzchain_measure::measure(&files, &options, &bar);
+    measured.notes.splice(0..0, notes);
     bar.0.finish_and_clear();
     measure::suits(&measured)?;
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
-    report(&measured);
+    list_notes(&measured);
     note_low_pass(&measured, &options, arguments.picking.low_pass.map(|corner| corner.0));
     match arguments.json {
         true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
         false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
+    }
+    if let Some(path) = &arguments.report {
+        report::write(path, &measured)?;
     }
     if let Some(folder) = folder {
         write(folder, &measured, (&curves, &grouping.reference))?;
@@ -57,7 +63,7 @@ fn bar() -> FileBar {
 const MOST_LINES: usize = 20;
 
 /// What is to be known of records beside their times.
-fn report(measured: &Measurement) {
+fn list_notes(measured: &Measurement) {
     for refused in &measured.refused {
         print::note(&format!("refused: {refused}"));
     }
@@ -97,7 +103,7 @@ fn write(
     measured: &Measurement,
     (curves, reference): (&Curves, &str),
 ) -> Result<(), Failure> {
-    folder.write_with("shots.csv", |out| write_shots(&measured.shots, out))?;
+    folder.write_with("shots.csv", |out| write_shots(&measured.shots, curves, out))?;
     folder.write_with("measured.json", |out| measure::write_json(measured, curves, out))?;
     if let Some(figure) = pictures::signals(&measured.examples) {
         folder.figure("signals", &figure)?;

@@ -10,11 +10,14 @@ const BEGINNING: usize = 1 << 18;
 
 const ROWS: usize = 60;
 
+/// Rows in succession that begin the numbers.
+const FIRST_ROWS: usize = 3;
+
 /// Share of rows in which a column must hold a number to be one of numbers.
 const MOSTLY: f64 = 0.8;
 
-/// Weight of a number with marks between its thousands: a dialect that reads it without any
-/// comes first.
+/// Weight of a number with marks between its thousands, or with zeros before its digits: a dialect
+/// that reads it without any comes first.
 const GROUPED: f64 = 0.99;
 
 /// Delimiters in the order of preference; a comma may be a decimal one.
@@ -77,7 +80,10 @@ impl Dialect {
             cells.iter().filter(number).count() as f64 >= MOSTLY * rows.len() as f64
         };
         dialect.columns = (0..widest).filter(|column| is_number(*column)).collect();
-        let first = beginning.lines().position(|line| dialect.is_row(line));
+        // A line of the preamble may look like a row, several do not.
+        let are: Vec<bool> = beginning.lines().map(|line| dialect.is_row(line)).collect();
+        let several = |at: &usize| are[*at..are.len().min(at + FIRST_ROWS)].iter().all(|is| *is);
+        let first = (0..are.len()).find(several).or(are.iter().position(|is| *is));
         dialect.first_row = first.filter(|_| !dialect.columns.is_empty())?;
         Some(dialect)
     }
@@ -106,13 +112,19 @@ fn share(rows: &[&str], delimiter: char, decimal_comma: bool) -> f64 {
         for field in fields.iter().filter(|field| !field.is_empty()) {
             all += 1.0;
             numbers += match plain(field, decimal_comma) {
-                Some(_) => 1.0,
+                Some(_) if !has_leading_zero(field) => 1.0,
+                Some(_) => GROUPED,
                 None if number(field, decimal_comma).is_some() => GROUPED,
                 None => 0.0,
             };
         }
     }
     if all > 0.0 { numbers / all } else { 0.0 }
+}
+
+/// Whether a zero stands before other digits, as after a decimal comma that was taken for a delimiter.
+fn has_leading_zero(field: &str) -> bool {
+    matches!(field.as_bytes(), [b'0', next, ..] if next.is_ascii_digit())
 }
 
 /// The lines at the beginning of a file, whole ones if there are any, each ended by LF.

@@ -34,7 +34,7 @@ const INTERVALS: &[&str] = &[
     "sample interval", "sampling interval", "sample period", "sampling period", "horizontal interval",
     "x increment", "xincr",
     "increment", "interval",
-    "delta(second)", "delta_x", "delta x", "time resolution",
+    "hresolution", "delta(second)", "delta_x", "delta x", "time resolution",
     "dt", "abtastintervall",
 ];
 
@@ -42,7 +42,7 @@ const INTERVALS: &[&str] = &[
 #[rustfmt::skip]
 const RATE_NAMES: &[&str] = &[
     "sample rate", "sampling rate", "samplerate", "sampling frequency", "sample frequency", "rate",
-    "fs", "abtastrate",
+    "fs", "clock=", "abtastrate",
 ];
 
 /// What separates a name and its unit: "time_us", "t/ms".

@@ -15,7 +15,9 @@ const QUIET: usize = 32;
 const ENOUGH: usize = 8192;
 /// Share of the largest swing that the first pulse exceeds: the wall's is at most twice as high in
 /// one row of equal beads.
-const FIRST: f64 = 0.25;
+pub(super) const FIRST: f64 = 0.25;
+/// The same where that finds no three pulses: the wall's sensor may be six times as sensitive.
+pub(super) const FIRST_LOW: f64 = 0.08;
 /// Swing over noise below which nothing is a pulse: among 10⁶ blocks of noise the largest is at 5.
 const LEAST_SWING: f64 = 6.0;
 /// Largest noise, as a share of the highest pulse, that is not smoothed.
@@ -36,7 +38,12 @@ pub(super) struct ChannelSignal<'a> {
 }
 
 impl<'a> ChannelSignal<'a> {
-    pub(super) fn new(samples: &'a [f64], polarity: Polarity) -> Result<Self, MeasureError> {
+    /// The first pulse exceeds this share of the largest swing.
+    pub(super) fn new(
+        samples: &'a [f64],
+        polarity: Polarity,
+        share: f64,
+    ) -> Result<Self, MeasureError> {
         MeasureError::enough(samples.len(), 16 * BLOCK)?;
         let (low, high) = extremes(samples);
         let blocks = blocks(samples, (low, high))?;
@@ -47,7 +54,7 @@ impl<'a> ChannelSignal<'a> {
         let some: Vec<f64> = blocks.iter().copied().step_by(stride).collect();
         let (offset, _) = median_and_spread(&some).unwrap_or_default();
         let (sign, swing) = direction(&blocks, offset, polarity);
-        let above = |block: &f64| sign * (block - offset) > FIRST * swing;
+        let above = |block: &f64| sign * (block - offset) > share * swing;
         let crosses = |pair: &[f64]| pair.iter().all(above);
         let cross = blocks.windows(2).position(crosses).unwrap_or(0);
         let width = rough_width(&blocks, cross, |b| sign * (b - offset));

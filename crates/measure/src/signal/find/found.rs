@@ -57,6 +57,8 @@ pub enum QualityFlag {
     FewSamples(PulseKind),
     /// Number of samples of spikes that were replaced by interpolation.
     Spikes(usize),
+    /// The baseline drifts, as by hum, and was fitted around the pulses.
+    Drift,
     /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
     FewQuietSamples,
 }
@@ -66,6 +68,31 @@ impl QualityFlag {
     /// or of pulses taken for one another.
     pub fn is_grave(&self) -> bool {
         matches!(self, Self::Saturation(_) | Self::Order | Self::Unidentified | Self::FewSamples(_))
+    }
+}
+
+impl QualityFlag {
+    /// A short code, without the pulse.
+    #[must_use]
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Saturation(_) => "saturated",
+            Self::Missing(_) => "missing",
+            Self::Split(_) => "split",
+            Self::AmbiguousMaximum(_) => "ambiguous",
+            Self::Asymmetric(_) => "asymmetric",
+            Self::Overlap(..) => "overlap",
+            Self::LowSignal(_) => "low",
+            Self::RecordTooShort => "short-record",
+            Self::Order => "order",
+            Self::Unidentified => "unidentified",
+            Self::NotPicked(_) => "not-picked",
+            Self::CoarseSteps(_) => "coarse-steps",
+            Self::FewSamples(_) => "few-samples",
+            Self::Spikes(_) => "spikes",
+            Self::Drift => "drift",
+            Self::FewQuietSamples => "few-quiet-samples",
+        }
     }
 }
 
@@ -87,6 +114,7 @@ impl fmt::Display for QualityFlag {
             Self::FewSamples(kind) => write!(f, "{kind} pulse of few samples"),
             Self::Spikes(1) => f.write_str("1 sample of a spike replaced"),
             Self::Spikes(samples) => write!(f, "{samples} samples of spikes replaced"),
+            Self::Drift => f.write_str("drifting baseline subtracted"),
             Self::FewQuietSamples => f.write_str("few quiet samples"),
         }
     }

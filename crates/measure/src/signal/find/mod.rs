@@ -10,7 +10,7 @@ pub use found::{CompetingMaximum, Found, Normalisation, Pulse, PulseKind, Qualit
 pub use options::{Channels, DigitiserRange, FindOptions, Polarity, PulseLimits};
 
 use crate::error::MeasureError;
-use channel::{ChannelSignal, Smoothed};
+use channel::{ChannelSignal, FIRST, FIRST_LOW, Smoothed};
 use select::PulseSelection;
 
 /// Finds the incident, the wall's and the reflected pulse of one shot.
@@ -61,14 +61,32 @@ pub(crate) fn conditioned_pulses(
 /// # Errors
 /// As [`pulses`].
 pub fn normalisation(samples: &[f64], polarity: Polarity) -> Result<Normalisation, MeasureError> {
-    ChannelSignal::new(samples, polarity).map(|channel| channel.normalisation)
+    ChannelSignal::new(samples, polarity, FIRST).map(|channel| channel.normalisation)
 }
 
 /// What was found, and other maxima that could be the largest of their pulses.
 type Gathered = (Found, Vec<Pulse>);
 
 fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, MeasureError> {
-    let channel = ChannelSignal::new(samples, options.polarity)?;
+    let doubtful = [QualityFlag::Order, QualityFlag::Unidentified];
+    let is_complete = |(found, _): &Gathered| {
+        found.pulses().count() == 3 && !doubtful.iter().any(|flag| found.flags.contains(flag))
+    };
+    let usual = summed_above(samples, options, FIRST)?;
+    if is_complete(&usual) {
+        return Ok(usual);
+    }
+    let lower = summed_above(samples, options, FIRST_LOW);
+    Ok(lower.ok().filter(is_complete).unwrap_or(usual))
+}
+
+/// The pulses of a channel whose first one exceeds a share of the largest swing.
+fn summed_above(
+    samples: &[f64],
+    options: &FindOptions,
+    share: f64,
+) -> Result<Gathered, MeasureError> {
+    let channel = ChannelSignal::new(samples, options.polarity, share)?;
     let end = select::end_of_interest(&channel, options);
     let mut smoothed = Smoothed::of_all(&channel, end);
     let mut selection = select::summed(&smoothed, options);
@@ -94,8 +112,8 @@ fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathe
             wall.len()
         )));
     }
-    let channel = ChannelSignal::new(sensor, options.polarity)?;
-    let wall = ChannelSignal::new(wall, options.wall_polarity)?;
+    let channel = ChannelSignal::new(sensor, options.polarity, FIRST)?;
+    let wall = ChannelSignal::new(wall, options.wall_polarity, FIRST)?;
     let reached = wall.first + wall.width as usize;
     let time = reached.saturating_sub(channel.first);
     let end = reached + 4 * time + 3 * channel.width as usize;

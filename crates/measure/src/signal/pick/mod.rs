@@ -69,6 +69,8 @@ pub struct Picked {
     pub height_sigma: f64,
     /// Full width at half maximum in s.
     pub width_s: f64,
+    /// Height over the noise of a sample; infinite without noise.
+    pub signal_to_noise: f64,
     /// Residuals of the fit over noise: near 1 if the model describes the pulse. `None` if nothing
     /// was fitted or there is no noise.
     pub misfit: Option<f64>,
@@ -309,7 +311,12 @@ impl<'a> Picker<'a> {
         match self {
             Self::Maximum => log_polynomial::pick(view, pulse)
                 .map_or_else(|| polynomial::pick_in_noise(view, pulse), Ok),
-            Self::Onset(fraction) => polynomial::pick_onset(view, pulse, *fraction),
+            Self::Onset(fraction) => polynomial::pick_onset(
+                view,
+                pulse,
+                *fraction,
+                polynomial::pick_roughly(view, pulse)?,
+            ),
             Self::Correlation(correlator) => correlator.pick(view, pulse),
             Self::Matched(shape, width) => shape::pick(view, pulse, shape, *width),
         }
@@ -322,7 +329,7 @@ impl<'a> Picker<'a> {
             top.ok_or_else(|| none("maximum that follows from its flanks, clipped as it is,"))?;
         match self {
             Self::Maximum => Ok(top),
-            Self::Onset(fraction) => polynomial::pick_onset_of_clipped(view, pulse, *fraction, top),
+            Self::Onset(fraction) => polynomial::pick_onset(view, pulse, *fraction, top),
             Self::Matched(shape, width) => {
                 let whole = Pulse { height: top.height, width_samples: top.width_s, ..*pulse };
                 shape::pick(view, &whole, shape, *width)

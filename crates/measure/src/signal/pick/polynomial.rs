@@ -69,6 +69,7 @@ impl Top {
             height: self.height,
             height_sigma: noise * self.height_share,
             width_s: pulse.width_samples,
+            signal_to_noise: self.height / view.noise(pulse),
             misfit: view.misfit(pulse, fit.residual),
         }
     }
@@ -145,9 +146,9 @@ const FLANK: f64 = 0.18;
 /// Share of the height at which a pulse is clipped up to which its flank can be fitted.
 const FREE: f64 = 0.7;
 
-/// Time in samples at which the rising flank passes a share f of the maximum.
+/// Time in samples at which the rising flank passes a share f of the maximum `top`.
 ///
-/// The maximum h is that of a local polynomial. The last sample below f h before it is the rough
+/// The maximum h is that of a local polynomial, or of a clipped pulse's flanks. The last sample below f h before it is the rough
 /// crossing; a cubic fitted about that gives the fine one. Variance: (var(cubic) + f² var(h))/slope²,
 /// with no more of a slope than a Gaussian as steep at half its height has there: what noise adds to
 /// it by chance must not lower the error.
@@ -155,31 +156,12 @@ pub(super) fn pick_onset(
     view: &ChannelView<'_>,
     pulse: &Pulse,
     fraction: f64,
-) -> Result<Picked, MeasureError> {
-    let top = pick_roughly(view, pulse)?;
-    onset_before(view, pulse, fraction, top)
-}
-
-/// As [`pick_onset`], with the maximum that follows from the flanks of a clipped pulse.
-pub(super) fn pick_onset_of_clipped(
-    view: &ChannelView<'_>,
-    pulse: &Pulse,
-    fraction: f64,
     top: Picked,
 ) -> Result<Picked, MeasureError> {
-    if fraction * top.height < FREE * pulse.height {
-        return onset_before(view, pulse, fraction, top);
+    if pulse.clipped.is_some() && fraction * top.height >= FREE * pulse.height {
+        let what = "rising flank up to that share, clipped as it is,";
+        return Err(MeasureError::NoPick(pulse.kind, what));
     }
-    let what = "rising flank up to that share, clipped as it is,";
-    Err(MeasureError::NoPick(pulse.kind, what))
-}
-
-fn onset_before(
-    view: &ChannelView<'_>,
-    pulse: &Pulse,
-    fraction: f64,
-    top: Picked,
-) -> Result<Picked, MeasureError> {
     let threshold = fraction * top.height;
     let crossing = rough_crossing(view, pulse, top.time_s, threshold);
     let (fit, u) = crossing

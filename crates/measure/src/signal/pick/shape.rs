@@ -67,6 +67,7 @@ pub(super) fn pick(
         height,
         height_sigma: sigma(0),
         width_s,
+        signal_to_noise: height / view.noise(pulse),
         misfit: view.misfit(pulse, (found.squares / freedom as f64).sqrt()),
     })
 }

@@ -1,6 +1,7 @@
 //! Every format as another program writes it.
 
 mod hdf5;
+mod laboratory;
 mod numpy;
 mod text_and_tdms;
 mod wav;

@@ -2,7 +2,7 @@
 
 use hertzchain_figures::{Chart, Dash, Figure, Legend, Series, case_look};
 use hertzchain_measure::signal::{Estimate, FitError, Flight, PowerLaw, Ratio};
-use hertzchain_measure::{Case, Curves, Example, SpeedRow};
+use hertzchain_measure::{Case, Curves, Example, Shot, SpeedRow};
 
 /// Examples that fit on a page.
 const MOST: usize = 4;
@@ -13,46 +13,47 @@ const MARGIN: f64 = 0.5;
 
 /// One shot of every case with its picks; `None` without any.
 pub(super) fn signals(examples: &[Example]) -> Option<Figure> {
-    let charts: Vec<Chart> = examples.iter().take(MOST).filter_map(signal).collect();
+    let good = examples.iter().filter(|example| example.shot.flight.is_ok());
+    let charts: Vec<Chart> = good.take(MOST).map(signal).collect();
     let empty = Figure::double_column(55.0 * charts.len() as f64 + 8.0).letters();
     (!charts.is_empty()).then(|| charts.into_iter().fold(empty, Figure::panel))
 }
 
-fn signal(example: &Example) -> Option<Chart> {
+/// A shot with its picks, if it has any: about its pulses, else whole.
+pub(super) fn signal(example: &Example) -> Chart {
     let shot = &example.shot;
-    let flight = shot.flight.as_ref().ok()?;
-    let picks = &flight.picks;
-    let last = picks.reflected.map_or(picks.wall.time_s, |back| back.time_s);
-    let margin_s = MARGIN * flight.incident_s.value;
-    let (from, to) = (picks.incident.time_s - margin_s, last + margin_s);
+    let flight = shot.flight.as_ref().ok();
+    let pulses = flight.map(|flight| {
+        let picks = &flight.picks;
+        let last = picks.reflected.map_or(picks.wall.time_s, |back| back.time_s);
+        let margin_s = MARGIN * flight.incident_s.value;
+        (picks.incident.time_s - margin_s, last + margin_s)
+    });
+    let (from, to) = pulses.unwrap_or((0.0, f64::INFINITY));
     let at = |time_s: f64| (time_s / shot.interval_s).max(0.0) as usize;
-    let (first, end) = (at(from), at(to));
     let time_us = |index: usize| 1e6 * index as f64 * shot.interval_s;
-    let mut chart = Chart::new("Time (µs)", "Signal (V)").title(&title(example, flight));
+    let mut chart = Chart::new("Time (µs)", "Signal (V)").title(&title(example));
     for (name, volts) in example.names.iter().zip(&example.volts) {
-        let shown = volts.get(first..end.min(volts.len()))?;
-        let times: Vec<f64> = (first..first + shown.len()).map(time_us).collect();
+        let end = at(to).min(volts.len());
+        let first = at(from).min(end);
+        let times: Vec<f64> = (first..end).map(time_us).collect();
         let name = if example.volts.len() > 1 { name } else { "" };
-        chart = chart.with(Series::line(name, &times, shown).dash(Dash::Solid));
+        chart = chart.with(Series::line(name, &times, &volts[first..end]).dash(Dash::Solid));
     }
-    chart = chart
-        .v_line(1e6 * picks.incident.time_s, "incident")
-        .v_line(1e6 * picks.wall.time_s, "wall");
-    Some(match picks.reflected {
-        Some(back) => chart.v_line(1e6 * back.time_s, "reflected"),
-        None => chart,
-    })
+    let Some(Flight { picks, .. }) = flight else { return chart };
+    let back = picks.reflected.map(|back| (back, "reflected"));
+    let all = [(picks.incident, "incident"), (picks.wall, "wall")].into_iter().chain(back);
+    all.fold(chart, |chart, (pick, name)| chart.v_line(1e6 * pick.time_s, name))
 }
 
-fn title(example: &Example, flight: &Flight) -> String {
-    let speed = example.shot.speed_m_s;
-    let speed = speed.map_or(String::new(), |speed| format!("{:.4} m/s, ", speed.value));
-    let case = match example.shot.case.as_str() {
-        "" => String::new(),
-        case => format!("{case}, "),
-    };
-    let incident_us = 1e6 * flight.incident_s.value;
-    format!("{case}{speed}incident {incident_us:.2} µs")
+fn title(example: &Example) -> String {
+    let Shot { case, speed_m_s, flight, .. } = &example.shot;
+    let case = Some(case.clone()).filter(|case| !case.is_empty());
+    let speed = speed_m_s.map(|speed| format!("{:.4} m/s", speed.value));
+    let incident = flight.as_ref().ok();
+    let incident =
+        incident.map(|flight| format!("incident {:.2} µs", 1e6 * flight.incident_s.value));
+    [case, speed, incident].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// Times of flight at the mean speeds with all their errors, and their power laws, dashed where

@@ -1,0 +1,127 @@
+//! MATLAB's files, groups of HDF5, and binary files of instruments that are not read.
+
+use super::{WAVE, all, assert_wave};
+use crate::common::{folder, python};
+use hertzchain_measure::records::{ReadOptions, read};
+use rust_hdf5::H5File;
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn matlabs_files_of_all_versions_are_read() {
+    let folder = folder("matlab");
+    let program = WAVE.to_owned()
+        + r#"
+import h5py, scipy.io
+one = {"A": wave(0).reshape(-1, 1), "Tinterval": 1e-6, "Tstart": -1e-3, "Length": 200.0}
+scipy.io.savemat("four.mat", one, format="4")
+scipy.io.savemat("five.mat", {**one, "A": one["A"].astype("f4"), "note": "steel"})
+scipy.io.savemat("counts.mat", {"a": (wave(0) * 128).astype("i2"), "fs": 1e6}, do_compression=True)
+apart = {"bead": wave(0).reshape(-1, 1), "wall": wave(1).reshape(-1, 1), "dt": 1e-6}
+scipy.io.savemat("apart.mat", apart, do_compression=True)
+scipy.io.savemat("columns.mat", {"x": numpy.array([wave(0), wave(1)]).T, "fs": [[1e6]]})
+with h5py.File("seven.mat", "w", userblock_size=512) as file:
+    file["x"], file["fs"] = numpy.array([wave(0), wave(1)]), [[1e6]]
+    file["note"] = numpy.array([[115], [116]], "u2")
+    file["note"].attrs["MATLAB_class"] = numpy.bytes_("char")
+with open("seven.mat", "r+b") as file:
+    file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64")
+"#;
+    if python(&folder, &program).is_none() {
+        return;
+    }
+    for (name, scale) in [("four.mat", 1.0), ("five.mat", 1.0), ("counts.mat", 1.0 / 128.0)] {
+        let records = all(&folder.join(name), &ReadOptions::default());
+        assert_eq!((records.len(), records[0].interval_s), (1, 1e-6), "{name}");
+        assert_wave(&records[0], 0, 0, scale);
+    }
+    for name in ["apart.mat", "columns.mat", "seven.mat"] {
+        let records = all(&folder.join(name), &ReadOptions::default());
+        assert_eq!((records.len(), records[0].channels.len()), (1, 2), "{name}");
+        assert_wave(&records[0], 1, 1, 1.0);
+    }
+    let whole = fs::read(folder.join("five.mat")).unwrap();
+    fs::write(folder.join("cut.mat"), &whole[..whole.len() / 2]).unwrap();
+    let error = refusal(&folder.join("cut.mat"));
+    assert!(error.contains("ends too early"), "{error}");
+}
+
+fn refusal(file: &Path) -> String {
+    let mut records = read(file, &ReadOptions::default());
+    records.next().unwrap().unwrap_err().to_string()
+}
+
+/// A group of HDF5 for each shot, with the rate as an attribute of the group.
+fn shots(file: &Path, names: &[&str], rates: &[f64]) {
+    let open = H5File::options().userblock(512).create(file).unwrap();
+    for (shot, name) in names.iter().enumerate() {
+        let group = open.create_group(name).unwrap();
+        for (channel, name) in ["bead", "wall"].into_iter().enumerate() {
+            let volts: Vec<f64> = (0..200).map(|i| super::wave(shot + channel, i)).collect();
+            let data = group.new_dataset::<f64>().shape([200]).create(name).unwrap();
+            data.write_raw(&volts).unwrap();
+        }
+        group.set_attr_numeric("sample_rate", &rates[shot]).unwrap();
+    }
+    open.close().unwrap();
+}
+
+#[test]
+fn a_group_a_shot_is_read_in_the_order_of_numbers() {
+    let file = folder("groups").join("shots.h5");
+    shots(&file, &["shot_2", "shot_10", "shot_1"], &[5e5; 3]);
+    let records = all(&file, &ReadOptions::default());
+    let numbers: Vec<_> = records.iter().map(|record| record.shot).collect();
+    assert_eq!((numbers, records[0].interval_s), (vec![Some(1), Some(2), Some(3)], 2e-6));
+    assert_wave(&records[0], 0, 2, 1.0);
+    assert_wave(&records[2], 1, 2, 1.0);
+    let walls = ReadOptions { channels: vec!["wall".to_owned()], ..ReadOptions::default() };
+    assert_wave(&all(&file, &walls)[1], 0, 1, 1.0);
+}
+
+#[test]
+fn rates_that_contradict_each_other_are_none() {
+    let file = folder("rates").join("shots.h5");
+    shots(&file, &["1", "2"], &[5e5, 1e6]);
+    let error = refusal(&file);
+    assert!(error.contains("--rate"), "{error}");
+}
+
+#[test]
+fn binary_files_of_instruments_are_named_with_a_remedy() {
+    let folder = folder("binary");
+    for (name, bytes, whose) in [
+        ("a.wfm", &b"\x0f\x0f:WFM#003\x00\x01"[..], "Tektronix"),
+        ("a.isf", b":WFMPRE:BYT_NR 2;\x00\x01", "Tektronix"),
+        ("a.trc", b"#9000015346WAVEDESC\x00", "LeCroy"),
+        ("a.bin", b"AG10\x00\x01", "Keysight"),
+        ("b.bin", b"RG01\x00\x01", "Rigol"),
+        ("b.wfm", b"\xa5\xa5\x26\x00", "Rigol"),
+        ("a.psdata", b"\x00\x01\x02", "PicoScope"),
+    ] {
+        fs::write(folder.join(name), bytes).unwrap();
+        let error = refusal(&folder.join(name));
+        assert!(error.contains(whose) && error.contains("CSV"), "{error}");
+    }
+}
+
+#[test]
+fn texts_of_loggers_without_times_state_their_rate() {
+    let folder = folder("loggers");
+    let wave = |i| super::wave(0, i);
+    let rows = |row: &dyn Fn(f64) -> String| (0..200).map(|i| row(wave(i))).collect::<String>();
+    let comma = |volt: f64| format!("\t{volt:.7}\n").replace('.', ",");
+    for (name, text) in [
+        (
+            "hresolution.csv",
+            format!("\"HResolution\",1.0E-06\n\"HUnit\",\"s\"\n{}", rows(&|v| format!(",{v}\n"))),
+        ),
+        ("clock.txt", format!("#CLOCK=1.000MHz\n{}", rows(&|v| format!("{v}\n")))),
+        ("comma.lvm", format!("Delta_X\t1,0E-6\t\nX_Value\tVoltage\tComment\n{}", rows(&comma))),
+    ] {
+        fs::write(folder.join(name), text).unwrap();
+        let records = all(&folder.join(name), &ReadOptions::default());
+        assert!((records[0].interval_s - 1e-6).abs() < 1e-18, "{name}");
+        assert_wave(&records[0], 0, 0, 1.0);
+    }
+}
