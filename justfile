@@ -29,6 +29,14 @@ test-python:
 test-explore *folder:
     .ci/explore {{folder}}
 
+# The explorer with its engine in WebAssembly, for any static host and as one file: just web [FOLDER]
+web *folder:
+    packaging/web {{folder}}
+
+# What `just web` needs beside a Rust toolchain and Python
+web-target:
+    rustup target add wasm32-wasip1
+
 # Everything in the paper, into reproduction/
 reproduce *options:
     cargo run --release -- reproduce {{options}}

@@ -622,7 +622,11 @@ function bindText() {
     wait = setTimeout(() => change([], { text: area.value }), 250);
   });
   area.addEventListener("scroll", () => ($("#lines").scrollTop = area.scrollTop));
-  area.addEventListener("blur", () => area.value === state.text || change([], { text: area.value }));
+  area.addEventListener("blur", () => {
+    // Not once more later: what a control changes meanwhile would be undone.
+    clearTimeout(wait);
+    if (area.value !== state.text) change([], { text: area.value });
+  });
 }
 
 function bindTabs() {

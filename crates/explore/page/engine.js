@@ -1,8 +1,6 @@
 // The engine behind the page: one request a lane, arrays decoded.
 
-const token = new URLSearchParams(location.search).get("token") ?? "";
-// Two tabs must not end each other's requests.
-const tab = Math.random().toString(36).slice(2, 10);
+import * as transport from "./transport.js";
 
 /** Why the engine gave no answer: `mistakes` of the experiment, or `message`. */
 export class Refused extends Error {
@@ -14,37 +12,22 @@ export class Refused extends Error {
   }
 }
 
-async function post(path, body, lane, signal) {
-  let response;
-  try {
-    response = await fetch(`${path}?lane=${tab}-${lane}`, {
-      method: "POST",
-      headers: { "Content-Type": "application/json", "X-Hertzchain-Token": token },
-      body: JSON.stringify(body),
-      signal,
-    });
-  } catch (error) {
-    if (error.name === "AbortError") throw new Refused("stopped");
-    throw new Refused({ error: "The engine is gone: start `hertzchain explore` again and open its address." });
-  }
-  const json = await response.json();
+function granted(json) {
   if (json && json.refused !== undefined) throw new Refused(json.refused);
   return json;
 }
 
 /** What the page starts with. */
-export const start = () => post("start", null, "start");
+export const start = async () => granted(await transport.start());
 
 /** The answer to a request; a newer one in the same lane ends it. */
-export async function ask(lane, request, signal) {
-  return (await post("answer", request, lane, signal)).reply;
-}
+export const ask = async (lane, request, signal) => granted(await transport.answer(lane, request, signal)).reply;
 
 /** How far the work of a lane is. */
-export const progress = (lane) => post("progress", null, lane);
+export const progress = async (lane) => granted(await transport.progress(lane));
 
 /** Ends the work of a lane. */
-export const cancel = (lane) => post("cancel", null, lane);
+export const cancel = async (lane) => granted(await transport.cancel(lane));
 
 /** Numbers of an array in a reply. */
 export function decoded(base64) {
@@ -87,3 +70,6 @@ export function newest(run) {
     }
   };
 }
+
+// For the browser's console: `await hertzchain.ask("console", { verb: "presets" })`.
+globalThis.hertzchain = { ask, decoded };

@@ -4,7 +4,7 @@ use crate::common::{Echo, refusal, reply, text};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use hertzchain_experiment::{examples, presets};
-use hertzchain_explore::{Refusal, Request, answer};
+use hertzchain_explore::{Refusal, Request, answer, respond};
 use hertzchain_sim::{Plan, Stop, shoot_estimated};
 use serde_json::{Value, json};
 
@@ -27,6 +27,36 @@ fn the_slope_of_a_hertz_row_is_a_fifth() {
     let slope = curve["power_law_incident"]["exponent"].as_f64().unwrap();
     // Times are computed to 1e-6 of themselves.
     assert!((slope + 0.2).abs() < 1e-6, "{slope}");
+}
+
+#[test]
+fn shards_of_a_curve_join_to_the_whole_to_the_bit() {
+    let curve = |shard: Value| {
+        let speeds = json!({ "from_m_s": 0.05, "to_m_s": 2.5, "count": 11 });
+        let request =
+            json!({ "verb": "batch", "text": text("dry"), "speeds": speeds, "shard": shard });
+        reply(request)
+    };
+    let shards: Vec<Value> = (1..=3).map(|number| curve(json!([number, 3]))).collect();
+    assert_eq!(shards[2]["speed_m_s"].as_array().unwrap().len(), 3);
+    let joined = reply(json!({ "verb": "join", "shards": shards }));
+    assert_eq!(joined, curve(Value::Null));
+    let none = json!({ "from_m_s": 0.1, "to_m_s": 1.0, "count": 2 });
+    let request = json!({ "verb": "batch", "text": text("dry"), "speeds": none, "shard": [3, 2] });
+    assert!(matches!(refusal(request), Refusal::Error(_)));
+}
+
+#[test]
+fn a_request_on_a_stream_is_answered_as_elsewhere() {
+    let streamed = |request: &str| -> Value {
+        let mut output = Vec::new();
+        respond(&Echo, request.as_bytes(), &mut output).unwrap();
+        serde_json::from_slice(&output).unwrap()
+    };
+    let request = json!({ "verb": "shot", "text": text("dry"), "draft": true });
+    assert_eq!(streamed(&request.to_string()), json!({ "reply": reply(request) }));
+    let refused = streamed("{")["refused"]["error"].to_string();
+    assert!(refused.contains("not understood"), "{refused}");
 }
 
 #[test]

@@ -31,6 +31,8 @@ pub mod bibliography;
 mod contact;
 pub mod csv;
 pub mod design;
+#[cfg(feature = "explore")]
+pub mod explorer;
 pub mod failure;
 pub mod fit;
 pub mod gauge;
@@ -41,6 +43,7 @@ pub mod laws;
 pub mod measure;
 pub mod missing;
 pub mod options;
+#[cfg(not(target_family = "wasm"))]
 pub mod program;
 pub mod quantity;
 pub mod table;

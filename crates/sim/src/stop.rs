@@ -22,9 +22,16 @@ struct Shared {
     done: AtomicU64,
     steps: AtomicU64,
     note: Mutex<String>,
+    watch: Option<fn(&Stop)>,
 }
 
 impl Stop {
+    /// Returns a request that calls a function whenever a counter or the note has changed.
+    #[must_use]
+    pub fn watched(watch: fn(&Self)) -> Self {
+        Self(Arc::new(Shared { watch: Some(watch), ..Shared::default() }))
+    }
+
     /// Asks everything in the pool to stop.
     pub fn ask(&self) {
         self.0.asked.store(true, Ordering::Relaxed);
@@ -98,5 +105,12 @@ pub(crate) fn count_steps(more: u64) {
 }
 
 fn with_own(act: impl Fn(&Stop)) {
-    OWN.with(|own| own.borrow().as_ref().map(act));
+    OWN.with(|own| {
+        if let Some(stop) = own.borrow().as_ref() {
+            act(stop);
+            if let Some(watch) = stop.0.watch {
+                watch(stop);
+            }
+        }
+    });
 }

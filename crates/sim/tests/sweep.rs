@@ -2,7 +2,7 @@
 
 use hertzchain_experiment::preset;
 use hertzchain_sim::{
-    Batch, BatchOptions, BatchResult, BatchShot, Column, Shard, Stop, parse_speeds,
+    Batch, BatchOptions, BatchResult, BatchShot, Column, Shard, Stop, count_done, parse_speeds,
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -59,6 +59,20 @@ fn progress_is_reported_once_a_shot() {
     };
     let _ = batch("hertz", vec![0.5, -1.0, 2.0], 1e-6).run(Shard::WHOLE, &progress);
     assert_eq!(count.into_inner(), 3);
+}
+
+#[test]
+fn a_watched_request_reports_every_count_on_its_own_thread() {
+    static SEEN: AtomicUsize = AtomicUsize::new(0);
+    let stop = Stop::watched(|stop| {
+        SEEN.fetch_max(stop.done() as usize, Ordering::Relaxed);
+    });
+    count_done(1);
+    assert_eq!(SEEN.load(Ordering::Relaxed), 0);
+    stop.adopt();
+    count_done(2);
+    count_done(3);
+    assert_eq!(SEEN.load(Ordering::Relaxed), 5);
 }
 
 #[test]

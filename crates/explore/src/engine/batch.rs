@@ -2,7 +2,7 @@
 
 use super::{Refusal, effort, outline};
 use hertzchain_measure::signal::PowerLaw;
-use hertzchain_sim::{Batch, BatchOptions, Column, Plan, Shard};
+use hertzchain_sim::{Batch, BatchOptions, Column, Plan, Rows, Shard};
 use serde::{Deserialize, Serialize};
 
 /// Speeds of the striker, spread evenly in the logarithm.
@@ -20,7 +20,7 @@ pub struct Speeds {
 const MOST_SPEEDS: usize = 1000;
 
 /// Times of flight against speed; null where a speed has none.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BatchReply {
     /// Speeds in m/s.
     pub speed_m_s: Vec<f64>,
@@ -37,7 +37,7 @@ pub struct BatchReply {
 }
 
 /// Time of flight = prefactor · speed^exponent, by least squares in the logarithms.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PowerLawReply {
     /// Time of flight at 1 m/s, in s.
     pub prefactor_s: f64,
@@ -63,34 +63,65 @@ impl Speeds {
     }
 }
 
-/// Returns times of flight against speed.
-pub(super) fn batch(text: &str, speeds: &Speeds) -> Result<BatchReply, Refusal> {
+/// Returns times of flight against speed, of a shard by its number from 1 and how many there are.
+pub(super) fn batch(
+    text: &str,
+    speeds: &Speeds,
+    shard: Option<(usize, usize)>,
+) -> Result<BatchReply, Refusal> {
     let experiment = outline::experiment(text)?;
     let speeds = speeds.all()?;
     let of_study = |error| Refusal::of_study(text, error);
     let of_text = |mistakes| Refusal::of_text(text, &mistakes);
+    let shard = shard.map_or(Ok(Shard::WHOLE), |(number, of)| Shard::new(number, of));
+    let shard = shard.map_err(of_study)?;
     let (plan, _warnings) = Plan::from_experiment(&experiment, None).map_err(of_text)?;
     effort::check_time(&plan, speeds.len())?;
     let options = BatchOptions::of(&experiment);
-    let batch = Batch::new(&experiment, speeds, options).map_err(of_study)?;
-    let result = batch.run(Shard::WHOLE, &|| {});
-    let column = |of| {
-        let numbers = result.rows.column(of).iter();
-        numbers.map(|number| number.is_finite().then_some(*number)).collect()
-    };
-    let speed_m_s = result.rows.column(Column::Speed).to_vec();
-    let law = |of| law(result.rows.law(of, result.accuracy).0.ok());
-    let failed = result.rows.failed.iter();
-    Ok(BatchReply {
-        tof_incident_s: column(Column::Incident),
-        tof_reflected_s: column(Column::Reflected),
-        power_law_incident: law(Column::Incident),
-        power_law_reflected: law(Column::Reflected),
-        failed: failed
-            .filter_map(|failed| Some((*speed_m_s.get(failed.place)?, failed.why.clone())))
-            .collect(),
-        speed_m_s,
-    })
+    let batch = Batch::new(&experiment, speeds.clone(), options).map_err(of_study)?;
+    let rows = batch.run(shard, &|| {}).rows;
+    let failed = rows.failed.iter();
+    let failed = failed.filter_map(|one| Some((*speeds.get(one.place)?, one.why.clone())));
+    Ok(BatchReply::of(&rows, failed.collect()))
+}
+
+/// Returns the curve whose shards these are, the first one first.
+pub(super) fn join(shards: &[BatchReply]) -> BatchReply {
+    let rows: Vec<Rows> = shards.iter().map(BatchReply::rows).collect();
+    let mut failed: Vec<_> = shards.iter().flat_map(|shard| shard.failed.clone()).collect();
+    failed.sort_by(|one, other| one.0.total_cmp(&other.0));
+    BatchReply::of(&Rows::dealt(&rows), failed)
+}
+
+impl BatchReply {
+    fn of(rows: &Rows, failed: Vec<(f64, String)>) -> Self {
+        let column = |of| {
+            let numbers = rows.column(of).iter();
+            numbers.map(|number| number.is_finite().then_some(*number)).collect()
+        };
+        // Accuracies are not asked for with the law.
+        let law = |of| law(rows.law(of, f64::NAN).0.ok());
+        Self {
+            speed_m_s: rows.column(Column::Speed).to_vec(),
+            tof_incident_s: column(Column::Incident),
+            tof_reflected_s: column(Column::Reflected),
+            power_law_incident: law(Column::Incident),
+            power_law_reflected: law(Column::Reflected),
+            failed,
+        }
+    }
+
+    /// Its columns as the library has them.
+    fn rows(&self) -> Rows {
+        let mut rows = Rows::default();
+        let numbers = |of: &[Option<f64>]| of.iter().map(|one| one.unwrap_or(f64::NAN)).collect();
+        rows.columns[Column::Speed as usize].clone_from(&self.speed_m_s);
+        rows.columns[Column::Incident as usize] = numbers(&self.tof_incident_s);
+        rows.columns[Column::Reflected as usize] = numbers(&self.tof_reflected_s);
+        // A law takes an accuracy for each time, known or not.
+        rows.columns[Column::Accuracy as usize] = vec![f64::NAN; self.speed_m_s.len()];
+        rows
+    }
 }
 
 fn law(law: Option<PowerLaw>) -> Option<PowerLawReply> {

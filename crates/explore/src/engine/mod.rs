@@ -58,6 +58,14 @@ pub enum Request {
         text: String,
         /// Speeds of the striker.
         speeds: Speeds,
+        /// Number of a shard from 1, and how many there are, if not the whole is asked for.
+        #[serde(default)]
+        shard: Option<(usize, usize)>,
+    },
+    /// A curve from its shards.
+    Join {
+        /// All of them, the first one first.
+        shards: Vec<BatchReply>,
     },
     /// What theory says of the chain's waves.
     Theory {
@@ -137,8 +145,13 @@ pub trait Verbs: Send + Sync + 'static {
 /// # Errors
 /// Mistakes in the experiment with their places, and whatever else keeps from an answer.
 pub fn answer(request: &Request, verbs: &dyn Verbs, stop: &Stop) -> Result<Reply, Refusal> {
-    let pool = stop.pool(0).map_err(Refusal::words)?;
-    let reply = pool.install(|| dispatch(request, verbs));
+    let reply = if cfg!(target_family = "wasm") {
+        // No threads there: the page runs several engines.
+        stop.clone().adopt();
+        dispatch(request, verbs)
+    } else {
+        stop.pool(0).map_err(Refusal::words)?.install(|| dispatch(request, verbs))
+    };
     match stop.is_asked() {
         true => Err(Refusal::Stopped),
         false => reply,
@@ -156,9 +169,10 @@ fn dispatch(request: &Request, verbs: &dyn Verbs) -> Result<Reply, Refusal> {
         Request::Shot { text, samples, draft } => {
             shot::shot(text, *samples, *draft).map(Box::new).map(Reply::Shot)
         }
-        Request::Batch { text, speeds } => {
-            batch::batch(text, speeds).map(Box::new).map(Reply::Batch)
+        Request::Batch { text, speeds, shard } => {
+            batch::batch(text, speeds, *shard).map(Box::new).map(Reply::Batch)
         }
+        Request::Join { shards } => Ok(Reply::Batch(Box::new(batch::join(shards)))),
         Request::Theory { text } => outline::theory(text).map(Reply::Theory),
         Request::Measure(recording) => words::reported(verbs.measure(recording)),
         Request::Fit { text, table, options } => words::reported(verbs.fit(text, table, options)),

@@ -41,6 +41,11 @@ impl Refusal {
         Self::Error(error.to_string())
     }
 
+    /// Returns why a request can't be read.
+    pub(crate) fn unread(error: serde_json::Error) -> Self {
+        Self::Error(format!("the request is not understood: {error}"))
+    }
+
     /// Returns the mistakes of an experiment's text.
     #[must_use]
     pub fn of_text(text: &str, mistakes: &Mistakes) -> Self {

@@ -11,6 +11,8 @@ use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use jobs::Jobs;
+use std::ffi::OsStr;
+use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::Arc;
 use std::time::Duration;
@@ -37,7 +39,7 @@ pub enum ServerError {
         /// Port asked for; 0 for any.
         port: u16,
         /// Why.
-        error: std::io::Error,
+        error: io::Error,
     },
     /// The system has no threads or no random numbers.
     #[error("the server can't start: {0}")]
@@ -56,6 +58,14 @@ struct Server {
     jobs: Jobs,
     verbs: Arc<dyn Verbs>,
     experiment: Option<String>,
+}
+
+/// Opens an address in the user's browser.
+///
+/// # Errors
+/// A system without a browser.
+pub fn open(address: impl AsRef<OsStr>) -> io::Result<()> {
+    ::open::that_detached(address)
 }
 
 /// Serves the page until the program ends, and calls `opened` with its address once it can be

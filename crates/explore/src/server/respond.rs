@@ -4,6 +4,7 @@ use super::Server;
 use super::assets::{ASSETS, PAGE};
 use super::jobs::Job;
 use crate::engine::{Refusal, Reply, Request, answer};
+use crate::respond::Response as Answer;
 use http_body_util::{BodyExt, Full, LengthLimitError, Limited};
 use hyper::body::{Body, Bytes, Incoming};
 use hyper::header::{
@@ -11,7 +12,8 @@ use hyper::header::{
     REFERRER_POLICY, X_CONTENT_TYPE_OPTIONS,
 };
 use hyper::{Method, Response, StatusCode};
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::json;
 use std::convert::Infallible;
 use std::sync::Arc;
 use std::time::Duration;
@@ -110,12 +112,7 @@ async fn compute(server: &Server, request: hyper::Request<Incoming>, lane: &str)
     };
     let request: Request = match serde_json::from_slice(&body) {
         Ok(request) => request,
-        Err(error) => {
-            return refused(
-                StatusCode::BAD_REQUEST,
-                &format!("the request is not understood: {error}"),
-            );
-        }
+        Err(error) => return failed(StatusCode::BAD_REQUEST, Refusal::unread(error)),
     };
     drop(body);
     let Some(job) = server.jobs.enter(lane) else {
@@ -128,13 +125,11 @@ async fn compute(server: &Server, request: hyper::Request<Incoming>, lane: &str)
         Request::Fit { .. } => FIT,
         _ => ANSWER,
     };
-    match tokio::time::timeout(longest, run(server, &job, request)).await {
-        Ok(Ok(reply)) => done(&json!({ "reply": reply })),
-        Ok(Err(refusal)) => done(&json!({ "refused": refusal })),
-        Err(_) => done(&json!({ "refused": Refusal::Error(format!(
-            "the answer took more than {longest:?} and was given up"
-        )) })),
-    }
+    let answered = tokio::time::timeout(longest, run(server, &job, request)).await;
+    done(&Answer::from(answered.unwrap_or_else(|_| {
+        let text = format!("the answer took more than {longest:?} and was given up");
+        Err(Refusal::Error(text))
+    })))
 }
 
 /// Answers on a thread of its own, so that this one goes on serving.
@@ -174,14 +169,21 @@ fn page(kind: &'static str, text: &'static str) -> Page {
     response(StatusCode::OK, kind, Bytes::from_static(text.as_bytes()))
 }
 
-fn done(json: &Value) -> Page {
-    let text = json.to_string();
-    response(StatusCode::OK, "application/json", text.into())
+fn done(reply: &impl Serialize) -> Page {
+    json_of(StatusCode::OK, reply)
 }
 
 fn refused(status: StatusCode, why: &str) -> Page {
-    let text = json!({ "refused": Refusal::Error(why.to_owned()) }).to_string();
-    response(status, "application/json", text.into())
+    failed(status, Refusal::Error(why.to_owned()))
+}
+
+fn failed(status: StatusCode, refusal: Refusal) -> Page {
+    json_of(status, &Answer::Refused(refusal))
+}
+
+fn json_of(status: StatusCode, of: &impl Serialize) -> Page {
+    let bytes = serde_json::to_vec(of).expect("texts, numbers and lists of them are JSON");
+    response(status, "application/json", bytes.into())
 }
 
 fn response(status: StatusCode, kind: &'static str, body: Bytes) -> Page {
