@@ -75,12 +75,14 @@ pub(crate) enum Family {
     Loaded,
     /// With soft contacts from some bead on.
     Soft,
+    /// With stops of 1/1000 to 1 times the last bead.
+    Stops,
 }
 
 impl Family {
     /// By its name.
     pub(crate) fn named(name: &str) -> Option<Self> {
-        let all = [Self::Light, Self::Heavy, Self::Split, Self::Loaded, Self::Soft];
+        let all = [Self::Light, Self::Heavy, Self::Split, Self::Loaded, Self::Soft, Self::Stops];
         all.into_iter().find(|it| format!("{it:?}").to_lowercase() == name)
     }
 
@@ -108,6 +110,13 @@ impl Family {
                 };
                 row.sections.retain(|(from, _)| *from < first);
                 row.sections.push((first, vec![soft]));
+            }
+            Self::Stops => {
+                let mass_kg = row.beads[count - 1].mass_kg * chance.decades(1e-3, 1.0);
+                row.far = match chance.chance(0.5) {
+                    true => Far::Stop { mass_kg },
+                    false => Far::PlaneStop { mass_kg },
+                };
             }
         }
     }

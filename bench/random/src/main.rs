@@ -30,7 +30,7 @@ use std::time::{Duration, Instant};
 
 const USAGE: &str = "usage: hertzchain-random [COUNT] [--seed N] [--from N] [--jobs N] \
      [--program FILE] [--keep FOLDER] [--only \"shot\"|\"sweep -a 1e-6\"|...] [--all] \
-     [--family light|heavy|split|loaded|soft] [--beads MOST] [--seconds N] [--sample] [--maxima]";
+     [--family light|heavy|split|loaded|soft|stops] [--beads MOST] [--seconds N] [--sample] [--maxima]";
 
 /// What is to be done.
 struct Options {

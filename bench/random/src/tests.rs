@@ -4,7 +4,7 @@ use crate::draw;
 use crate::reference::Reference;
 use crate::row::{Ball, Far, Law, Material, Row};
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::{Control, InstructionSet, Plan, Shot, run_plans, shoot_estimated};
+use hertzchain_sim::{Control, InstructionSet, Plan, Shot, run_plans, shoot, shoot_estimated};
 
 /// The paper's row of 40 steel balls.
 fn paper(speed_m_s: f64, laws: &[Law]) -> Row {
@@ -92,6 +92,25 @@ fn shots_and_sweeps_of_a_fixed_sample_are_as_wrong_as_they_state_at_most() {
             );
             let what = format!("sweep of row {line} at {accuracy:e}");
             assert_as_stated(shots[0].as_ref().unwrap(), right_s, &what);
+        }
+    }
+}
+
+/// Rows whose errors hardly fall with the tolerance: one change to a looser run says too little.
+#[test]
+fn shots_of_rows_with_slow_convergence_are_as_wrong_as_they_state_at_most() {
+    for at in [64, 93, 125] {
+        let row = draw::row(11, at, None);
+        let experiment = Experiment::from_text("row.toml", &row.toml()).unwrap();
+        let plan = Plan::from_experiment(&experiment, None).unwrap().0;
+        let exact = shoot(&plan.clone().for_flights().with_accuracy(1e-12)).unwrap();
+        let exact = exact.flight.unwrap();
+        for half_decades in 6..=12 {
+            let accuracy = 10_f64.powf(-0.5 * f64::from(half_decades));
+            let shot =
+                shoot_estimated(&plan.clone().with_budget().with_accuracy(accuracy)).unwrap();
+            let right_s = [exact.incident_s, exact.reflected_s.unwrap_or(f64::NAN)];
+            assert_as_stated(&shot, right_s, &format!("row {at} at {accuracy:e}"));
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::shot::{Conditioning, Shot};
 use hertzchain_chain::ensemble::Precision;
 use hertzchain_chain::observe::{Competing, Passage, Pulse};
 use hertzchain_chain::{InstructionSet, System};
+use rayon::prelude::*;
 use std::fmt::{Display, Formatter, Result as Formatted};
 use std::sync::Arc;
 
@@ -31,6 +32,14 @@ const MOST_HALVINGS: usize = 6;
 /// Estimates are this many times the largest error of calibration shots of the same condition: in
 /// between others may be worse.
 const MARGIN: f64 = 1.5;
+
+/// Halving a step leaves at most a quarter of an error: what that changes is three times what is
+/// left. Forces that begin or end within a step leave errors of order two.
+const OF_HALVING: f64 = 3.0;
+
+/// Errors fall at most with this power of the step: settings that this shows to be too coarse
+/// are not tried.
+const HIGHEST_ORDER: f64 = 6.0;
 
 /// Two maxima of which one is lower by no more than this many errors of heights may change places.
 const OF_HEIGHTS: f64 = 4.0;
@@ -122,6 +131,8 @@ impl Calibration {
         let per_shot = OF_PER_SHOT * cost(&own, Precision::Double);
         let sample = Sample::new(plans, own, set)?;
         let mut best: Option<(f64, Self)> = None;
+        // The longest step worth trying, of each kind of setting.
+        let mut longest: Vec<(Setting, f64)> = Vec::new();
         for (precision, step, openings) in SETTINGS {
             let setting =
                 Setting { step, precision: Some(precision), openings, shapes: false, passed: true };
@@ -129,12 +140,18 @@ impl Calibration {
             if cost(&setting, precision) >= least {
                 break;
             }
-            let tried = sample.try_setting(setting, (first, &system));
-            if let Some((calibration, missed)) = tried {
-                let expected = cost(&setting, precision) + missed * per_shot;
-                if expected < least {
-                    best = Some((expected, calibration));
-                }
+            let too_long = |(tried, longest): &(Setting, f64)| {
+                step > *longest && *tried == Setting { step: tried.step, ..setting }
+            };
+            if longest.iter().any(too_long) {
+                continue;
+            }
+            let trial = sample.try_setting(setting, (first, &system));
+            let shorter = trial.excess.max(1.0).powf(-HIGHEST_ORDER.recip());
+            longest.extend((shorter > 0.0).then_some((setting, step * shorter)));
+            let expected = cost(&setting, precision) + trial.missed * per_shot;
+            if let Some(calibration) = trial.calibration.filter(|_| expected < least) {
+                best = Some((expected, calibration));
             }
         }
         let best = best.map(|(_, calibration)| calibration);
@@ -175,10 +192,15 @@ impl Calibration {
         shots.map(|shot| self.right_enough(shot?)).collect()
     }
 
+    /// The relative error of a shot's times of flight.
+    fn estimate(&self, shot: &Shot) -> f64 {
+        let Conditioning { forces, interpolation } = shot.conditioning;
+        self.error * forces + MARGIN * interpolation
+    }
+
     /// The shot with its estimate, if that is what was asked.
     fn right_enough(&self, mut shot: Shot) -> Option<Shot> {
-        let Conditioning { forces, interpolation } = shot.conditioning;
-        let reached = self.error * forces + MARGIN * interpolation;
+        let reached = self.estimate(&shot);
         let sure = is_alone(&shot) && !may_flip(shot.passage.as_ref().ok()?, self.height_error);
         let right = reached <= shot.accuracy_asked && sure;
         shot.accuracy_reached = Some(reached);
@@ -209,7 +231,7 @@ impl<'a> Sample<'a> {
         let run = |step: f64| {
             let setting =
                 Setting { step, precision: Some(Precision::Double), openings: true, ..own };
-            let shots = run_lanes(&plans, &systems, set, &setting).into_iter();
+            let shots = side_by_side(&plans, &systems, set, &setting).into_iter();
             let shots: Option<Vec<Shot>> = shots.collect();
             shots.ok_or("calibration shots are not finished by equal steps")
         };
@@ -222,7 +244,7 @@ impl<'a> Sample<'a> {
             step *= 0.5;
             let coarse = std::mem::replace(&mut exact, run(step)?);
             let right = |(fine, coarse): (&Shot, &Shot)| {
-                fine.change(coarse) <= fine.accuracy_asked / TIGHTER
+                fine.change(coarse) <= OF_HALVING * fine.accuracy_asked / TIGHTER
             };
             if exact.iter().zip(&coarse).all(right) {
                 return Ok(Self { plans, systems, exact, set });
@@ -231,14 +253,9 @@ impl<'a> Sample<'a> {
         Err("calibration shots do not converge")
     }
 
-    /// A calibration with a setting, and the share of shots that are not right enough with it;
-    /// `None` where a shot is wrong and does not show it.
-    fn try_setting(
-        &self,
-        setting: Setting,
-        (first, system): (&Plan, &Arc<System>),
-    ) -> Option<(Calibration, f64)> {
-        let shots = run_lanes(&self.plans, &self.systems, self.set, &setting);
+    /// What the shots give with a setting.
+    fn try_setting(&self, setting: Setting, (first, system): (&Plan, &Arc<System>)) -> Trial {
+        let shots = side_by_side(&self.plans, &self.systems, self.set, &setting);
         let pairs = || shots.iter().zip(&self.exact);
         let known = || pairs().filter_map(|(shot, exact)| Some((shot.as_ref()?, exact)));
         let same = || known().filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
@@ -255,19 +272,47 @@ impl<'a> Sample<'a> {
             reached: 0.0,
             shots: self.plans.len(),
         };
+        let estimates = known().map(|(shot, _)| calibration.estimate(shot));
+        let excess = median(estimates.collect()) / first.accuracy;
         let right = |shot: &Shot| calibration.right_enough(shot.clone());
         let hidden = |(shot, exact): (&Shot, &Shot)| {
             right(shot).is_some_and(|shot| shot.change(exact) > shot.accuracy_asked)
         };
-        if known().any(hidden) {
-            return None;
-        }
+        let is_hidden = known().any(hidden);
         let right: Vec<Shot> = shots.iter().flatten().filter_map(right).collect();
         let reached = right.iter().filter_map(|shot| shot.accuracy_reached);
         let reached = reached.fold(0.0, f64::max);
         let missed = 1.0 - right.len() as f64 / self.plans.len() as f64;
-        Some((Calibration { reached, ..calibration }, missed))
+        let calibration = (!is_hidden).then_some(Calibration { reached, ..calibration });
+        Trial { calibration, missed, excess }
     }
+}
+
+/// What calibration shots give with one setting.
+struct Trial {
+    /// `None` where a shot is wrong and does not show it.
+    calibration: Option<Calibration>,
+    /// Share of shots that are not right enough.
+    missed: f64,
+    /// Median of the estimates over the accuracy asked.
+    excess: f64,
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::INFINITY)
+}
+
+/// Shots of all plans with a setting, on all threads.
+fn side_by_side(
+    plans: &[&Plan],
+    systems: &[Option<Arc<System>>],
+    set: InstructionSet,
+    setting: &Setting,
+) -> Vec<Option<Shot>> {
+    let lanes = Precision::Single.lanes();
+    let parts = plans.par_chunks(lanes).zip(systems.par_chunks(lanes));
+    parts.flat_map_iter(|(plans, systems)| run_lanes(plans, systems, set, setting)).collect()
 }
 
 /// Whether nothing competes with the reflected pulse of a shot, which is then over when it has

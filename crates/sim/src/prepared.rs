@@ -41,6 +41,12 @@ pub(crate) fn is_ambiguous(shot: &Shot) -> bool {
     standing(shot, 0.0, 0.0) > shot.accuracy_asked
 }
 
+/// A run's tolerance and the run, if it has not failed.
+type Looser = (f64, Option<Shot>);
+
+/// Most runs from which an error is estimated.
+const MOST_LOOSER: usize = 3;
+
 /// Most times that a shot is computed so that its energy budget closes.
 const MOST_TRIES: u32 = 4;
 
@@ -124,22 +130,24 @@ impl<'a> PreparedShot<'a> {
 
     /// Estimates a shot's error from runs for times of flight alone at looser
     /// tolerances. Where the estimate is above the accuracy asked, a tighter shot
-    /// takes its place, and what changed estimates the error of that one.
+    /// takes its place, and those before it estimate the error of that one: in other than gentle
+    /// rows several, because one agrees by chance where errors hardly fall with the tolerance.
     fn estimate(&self, shot: &mut Shot, mut tolerance: f64) -> Result<(), StudyError> {
-        let of_plan = accuracy::margin(self.plan);
-        let mut reached = self.estimated(shot, tolerance);
+        let mut looser = self.looser(tolerance);
+        let mut reached = self.estimated(shot, tolerance, &looser);
         for _ in 0..MOST_TRIES {
             if reached <= self.plan.accuracy || 0.1 * tolerance < TIGHTEST {
                 break;
             }
-            tolerance *= 0.1;
-            let tighter = self.tightened(tolerance, self.plan.watch.is_some())?;
-            let changes = [(10.0, tighter.change(shot))];
-            let heights = tighter.height_change(shot);
-            reached =
-                standing(&tighter, accuracy::estimated(&changes, of_plan, tolerance), heights);
+            let tighter = self.tightened(0.1 * tolerance, self.plan.watch.is_some())?;
             let notes = std::mem::take(&mut shot.notes);
-            *shot = Shot { notes, ..tighter };
+            let before = std::mem::replace(shot, Shot { notes, ..tighter });
+            looser.retain(|(_, run)| run.is_some());
+            looser.push((tolerance, Some(before)));
+            let kept = if accuracy::is_gentle(self.plan) { 1 } else { MOST_LOOSER };
+            looser.drain(..looser.len().saturating_sub(kept));
+            tolerance *= 0.1;
+            reached = self.estimated(shot, tolerance, &looser);
         }
         let margin = if tolerance < FINE { OF_FINE } else { 1.0 };
         // Looser runs confirm the accuracy asked and no better one.
@@ -147,8 +155,8 @@ impl<'a> PreparedShot<'a> {
         Ok(())
     }
 
-    /// The error of a shot, by looser runs.
-    fn estimated(&self, shot: &Shot, tolerance: f64) -> f64 {
+    /// Runs that are looser than one of a tolerance, with their own; `None` of one that fails.
+    fn looser(&self, tolerance: f64) -> Vec<Looser> {
         let wall = duration::has_wall(&self.plan.chain.far);
         let plan = Plan {
             budget: false,
@@ -161,16 +169,27 @@ impl<'a> PreparedShot<'a> {
             system: Arc::clone(&self.system),
             end: duration::end(&plan, &self.system),
         };
-        let of_plan = accuracy::margin(self.plan);
-        let mut heights = f64::INFINITY;
-        let changes = accuracy::LOOSER.map(|looseness| {
+        let run = |looseness: f64| {
             let run = looser.tightened((looseness * tolerance).min(LOOSEST), false);
-            let change = run.map_or(f64::INFINITY, |run| {
-                heights = heights.min(shot.height_change(&run));
-                shot.change(&run)
-            });
-            (looseness, change)
-        });
+            (looseness * tolerance, run.ok())
+        };
+        accuracy::LOOSER.map(run).into()
+    }
+
+    /// The error of a shot, by looser runs.
+    fn estimated(&self, shot: &Shot, tolerance: f64, looser: &[Looser]) -> f64 {
+        let of_plan = accuracy::margin(self.plan);
+        let change = |run: &Shot| match accuracy::is_gentle(self.plan) {
+            true => shot.change(run),
+            // Differences of times that are wrong may be right by chance.
+            false => shot.change(run).max(shot.times_change(run)),
+        };
+        let changes = looser
+            .iter()
+            .map(|(loose, run)| (loose / tolerance, run.as_ref().map_or(f64::INFINITY, change)));
+        let changes: Vec<(f64, f64)> = changes.collect();
+        let runs = looser.iter().filter_map(|(_, run)| run.as_ref());
+        let heights = runs.map(|run| shot.height_change(run)).fold(f64::INFINITY, f64::min);
         standing(shot, accuracy::estimated(&changes, of_plan, tolerance), heights)
     }
 

@@ -188,6 +188,18 @@ impl Shot {
         }
     }
 
+    /// Largest difference of the times of the three peaks, over the shortest time of flight.
+    pub(crate) fn times_change(&self, other: &Self) -> f64 {
+        let (Ok(one), Ok(two)) = (&self.passage, &other.passage) else {
+            return 0.0;
+        };
+        let off_s = |one: Maximum, two: Maximum| (one.time_s - two.time_s).abs();
+        let arrival_s = off_s(one.incident, two.incident).max(off_s(one.wall, two.wall));
+        let back = one.reflected.zip(two.reflected);
+        let flight_s = two.tof_reflected_s().unwrap_or(f64::INFINITY).min(two.tof_incident_s());
+        back.map_or(arrival_s, |(one, two)| arrival_s.max(off_s(one, two))) / flight_s
+    }
+
     /// The peaks of both computations, pulse by pulse; `None` where one has none.
     fn peak_pairs(&self, other: &Self) -> Option<[[Maximum; 2]; 3]> {
         let (one, two) = (self.passage.as_ref().ok()?, other.passage.as_ref().ok()?);
