@@ -6,6 +6,7 @@
 //! `docs/reference/conventions.md`: body 0 is the striker, beads are 1..=N, contact `c`
 //! sits between bodies `c` and `c + 1`, contact N between bead N and the far
 //! end; positions and velocities point from the striker to the wall.
+#![doc = include_str!("../README.md")]
 
 pub mod chain;
 pub mod ensemble;

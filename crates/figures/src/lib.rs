@@ -6,7 +6,8 @@
 //!
 //! Text is markup: inside `$...$`, `v_0`, `10^{-5}`, `K_{\mathrm{eff}}` and
 //! `\alpha` are set as in TeX; outside everything is literal apart from
-//! commands such as `\mu`. Equal input gives equal bytes.
+//! commands such as `\mu`.
+#![doc = include_str!("../README.md")]
 
 pub mod inference;
 

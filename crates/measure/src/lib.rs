@@ -4,7 +4,8 @@
 //! [`Curves::of`] reduces the shots to means a speed, ratios of wet to dry chains
 //! and power laws. [`ShotList`] gives shots the speeds that their files lack.
 //! Nothing here knows of chains: how many beads there are and where the sensor
-//! sits are plain numbers in [`hertzchain_measure::signal::FindOptions`].
+//! sits are plain numbers in [`signal::FindOptions`].
+#![doc = include_str!("../README.md")]
 
 pub mod records;
 pub mod signal;

@@ -50,8 +50,3 @@ pub use shard::{Shard, StoredShard};
 pub use shot::{Flight, OF_PEAKS, Rebound, Shot, shoot, shoot_checked, shoot_estimated};
 pub use speeds::{parse_speed, parse_speeds, parse_time};
 pub use stop::{Stop, count_done, note_progress, stopped};
-
-/// The README's example, compiled and run with the tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-pub struct Readme;

@@ -6,6 +6,7 @@
 mod archive;
 mod arrays;
 mod files;
+#[cfg(feature = "hdf5")]
 mod hdf5;
 mod interval;
 mod mat;
@@ -13,6 +14,7 @@ mod numpy;
 mod options;
 mod read;
 mod record;
+#[cfg(feature = "hdf5")]
 mod series;
 mod stored;
 mod tdms;
@@ -23,9 +25,11 @@ pub use files::{
     Files, no_formula, peek, remove_copies, remove_left_behind, seekable, text, without_controls,
     write_whole,
 };
+#[cfg(feature = "hdf5")]
 pub use hdf5::ColumnFile;
 pub use options::{Parts, ReadOptions, Rows};
 pub use read::{Records, is_recording, read};
 pub(crate) use record::extremes;
 pub use record::{Channel, Record};
+#[cfg(feature = "hdf5")]
 pub use series::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};

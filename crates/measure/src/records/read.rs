@@ -1,10 +1,12 @@
 //! Records of a file of any format, one by one.
 
 use crate::error::{MeasureError, file_name};
+#[cfg(feature = "hdf5")]
+use crate::records::hdf5::open as open_hdf5;
 use crate::records::options::{Parts, ReadOptions};
-use crate::records::record::{Channel, Record, extremes};
+use crate::records::record::{Channel, Record, SEPARATE, extremes};
 use crate::records::stored::from_sample;
-use crate::records::{hdf5, mat, numpy, series, tdms, text, wav};
+use crate::records::{mat, numpy, tdms, text, wav};
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
@@ -28,7 +30,7 @@ type Open = fn(&Path, &ReadOptions) -> Result<Raw, MeasureError>;
 /// All formats; text, which no bytes begin, last.
 #[rustfmt::skip]
 const FORMATS: [Format; 7] = [
-    ("HDF5", is_hdf5, &["h5", "hdf5", "hdf", "mat"], hdf5::open),
+    ("HDF5", is_hdf5, &["h5", "hdf5", "hdf", "mat"], open_hdf5),
     ("a NumPy array", |it| it.starts_with(b"\x93NUMPY"), &["npy"], numpy::open_npy),
     ("a ZIP archive, as NPZ files are", |it| it.starts_with(b"PK\x03\x04"), &["npz"], numpy::open_npz),
     ("RIFF WAVE", |it| it.starts_with(b"RIFF"), &["wav", "wave"], wav::open),
@@ -60,6 +62,10 @@ const VENDORS: [(usize, &[u8], &str, &str); 12] = [
 pub fn is_recording(file: &Path) -> bool {
     let extension = extension(file);
     FORMATS.iter().any(|format| format.2.contains(&&*extension))
+#[cfg(not(feature = "hdf5"))]
+fn open_hdf5(file: &Path, _options: &ReadOptions) -> Result<Raw, MeasureError> {
+    let detail = "HDF5, which this build does not read: compile it with the feature `hdf5`";
+    Err(MeasureError::malformed(file, "a recording", detail))
 }
 
 /// The records of a file, one at a time: a file larger than memory is never read whole.
@@ -157,7 +163,7 @@ fn two_channels(record: &Record) -> Option<String> {
         return None;
     };
     let (sensor, wall) = (&sensor.name, &wall.name);
-    (series::SEPARATE != [sensor.as_str(), wall.as_str()]).then(|| {
+    (SEPARATE != [sensor.as_str(), wall.as_str()]).then(|| {
         format!(
             "{sensor:?} was taken for the sensor bead's channel, {wall:?} for the wall's; if it is \
              the other way round: --channel {wall:?} --channel {sensor:?}, if one sums both \

@@ -128,6 +128,9 @@ pub struct Channel {
     pub range_v: Option<(f64, f64)>,
 }
 
+/// Channels of a series whose sensors have one each.
+pub(crate) const SEPARATE: &[&str] = &["sensor", "wall"];
+
 /// Numbers in V, and the converter's range.
 pub(crate) type Samples = (Vec<f64>, Option<(f64, f64)>);
 

@@ -10,7 +10,7 @@ use crate::records::hdf5::{attribute, column, damaged, dataset};
 use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
-use crate::records::record::{Channel, Record, converter_range_v};
+use crate::records::record::{Channel, Record, SEPARATE, converter_range_v};
 use crate::signal::Bandwidth;
 use flate2::CrcReader;
 use rust_hdf5::{H5Dataset, H5File, Hdf5Error};
@@ -22,7 +22,6 @@ use std::path::Path;
 const FORMAT: (&str, &str) = ("format", "hertzchain series");
 /// Datasets of the converter's readings, shots × samples: of both sensors, or of one each.
 const SUMMED: &[&str] = &["samples"];
-pub(crate) const SEPARATE: &[&str] = &["sensor", "wall"];
 /// Numbers of the shots; the scale of the first axis.
 const SHOT: &str = "shot";
 /// Programmed and measured speeds in m/s.
