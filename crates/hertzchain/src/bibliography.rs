@@ -25,19 +25,19 @@ const LETTERS: [(&str, &str); 16] = [
 
 /// A published work.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Work {
+pub(crate) struct Work {
     /// Authors, family name first.
-    pub authors: Vec<String>,
+    pub(crate) authors: Vec<String>,
     /// Its title.
-    pub title: String,
+    pub(crate) title: String,
     /// `None` for a book, a thesis or an unpublished work.
-    pub journal: Option<String>,
+    pub(crate) journal: Option<String>,
     /// Volume of the journal.
-    pub volume: Option<String>,
+    pub(crate) volume: Option<String>,
     /// Pages or number of the article.
-    pub pages: Option<String>,
+    pub(crate) pages: Option<String>,
     /// Year in which it appeared.
-    pub year: String,
+    pub(crate) year: String,
     /// Publisher, school or a note, where there is no journal.
     elsewhere: Option<String>,
 }
@@ -61,7 +61,7 @@ impl Work {
     }
 
     /// Authors, title and place in a line each.
-    pub fn lines(&self) -> [String; 3] {
+    pub(crate) fn lines(&self) -> [String; 3] {
         [self.authors.join("; "), self.title.clone(), self.place()]
     }
 

@@ -6,11 +6,11 @@ use hertzchain_measure::records::no_formula;
 
 /// A table under way: a line of titles, then lines of as many cells.
 #[derive(Debug)]
-pub struct Csv(Writer<Vec<u8>>);
+pub(crate) struct Csv(Writer<Vec<u8>>);
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Cell {
+pub(crate) enum Cell {
     /// Words, in quotes where they hold a comma, a quote or the end of a line.
     Words(String),
     /// A number with the fewest digits that give it back exactly; nothing if it is not
@@ -68,14 +68,16 @@ impl Cell {
 
 impl Csv {
     /// A table with these titles.
-    pub fn new<T: Into<Cell>>(titles: impl IntoIterator<Item = T>) -> Self {
+    #[must_use]
+    pub(crate) fn new<T: Into<Cell>>(titles: impl IntoIterator<Item = T>) -> Self {
         // Lines of any length, so that writing to memory has no way to fail.
         let writer = WriterBuilder::new().flexible(true).from_writer(Vec::new());
         Self(writer).with(titles)
     }
 
     /// The same with a line more.
-    pub fn with<T: Into<Cell>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
+    #[must_use]
+    pub(crate) fn with<T: Into<Cell>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
         let cells = cells.into_iter().map(|cell| cell.into().text());
         let written = self.0.write_record(cells);
         debug_assert!(written.is_ok(), "{written:?}");
@@ -83,6 +85,7 @@ impl Csv {
     }
 
     /// The same with a line more for each item.
+    #[must_use]
     pub(crate) fn with_all<I, T: Into<Cell>, L: IntoIterator<Item = T>>(
         self,
         items: impl IntoIterator<Item = I>,
@@ -93,7 +96,8 @@ impl Csv {
     }
 
     /// As text.
-    pub fn text(self) -> String {
+    #[must_use]
+    pub(crate) fn text(self) -> String {
         // Memory takes all there is, and cells are text: neither of both can fail.
         let bytes = self.0.into_inner().unwrap_or_default();
         String::from_utf8(bytes).unwrap_or_default()
@@ -101,7 +105,8 @@ impl Csv {
 }
 
 /// A square table: names along and down.
-pub fn square(names: &[&str], value: impl Fn(usize, usize) -> Option<f64>) -> Csv {
+#[must_use]
+pub(crate) fn square(names: &[&str], value: impl Fn(usize, usize) -> Option<f64>) -> Csv {
     let titles = std::iter::once("name").chain(names.iter().copied());
     let line = |(i, name): (usize, &&str)| {
         let values = (0..names.len()).map(|j| Cell::from(value(i, j)));

@@ -2,11 +2,12 @@
 
 use crate::csv::{Cell, Csv};
 use crate::failure::Failure;
-use crate::inference::{references_json, user};
+use crate::inference::{self, references_json, user};
 use crate::options::{DesignOptions as Arguments, Preload, WayKind};
+use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
-    Goodness, Identifiability, Kind, Problem, design, fit, titled, ways, wrong_speed,
+    Goodness, Identifiability, Kind, Problem, fit, titled, ways, wrong_speed,
 };
 use hertzchain_sim::parse_speeds;
 use serde_json::{Value, json};
@@ -27,6 +28,39 @@ pub struct DesignResult {
     pub undetermined: Vec<String>,
     /// What would settle them, if there are any.
     pub advice: Vec<String>,
+}
+
+/// Ranks what to measure next so that parameters tighten most; the result is of the problem beside it.
+///
+/// ```
+/// use hertzchain::prelude::*;
+///
+/// let table = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n\
+///              0.2,1e-4,9.030e-4,2e-7\n0.5,1e-4,7.565e-4,2e-7\n1.0,1e-4,6.829e-4,2e-7\n";
+/// let mut options = DesignOptions { speeds: Some("0.3,0.8".to_owned()), ..DesignOptions::default() };
+/// options.freed.free = vec!["eta".to_owned()];
+/// let data = inference::parsed("table", table, &options.measured, None)?;
+/// let (_, found) = design(&data, &preset("dry")?, &options)?;
+/// let best = &found.candidates[found.design.ranked[0].candidate];
+/// assert!(best.name.contains("m/s"), "{}", best.name);
+/// # Ok::<(), hertzchain::Failure>(())
+/// ```
+///
+/// # Errors
+/// Options, data and model that do not fit together; what is in the way of a fit.
+pub fn design(
+    data: &Data,
+    experiment: &Experiment,
+    options: &Arguments,
+) -> Result<(CurveProblem, DesignResult), Failure> {
+    let speeds = speeds(data, options)?;
+    let experiment = inference::in_case(experiment.clone(), &data.case)?;
+    let experiment = inference::changed(experiment, &options.modelled.set)?;
+    let model = inference::model(&experiment, &options.modelled, &options.freed)?;
+    let problem = inference::problem(model, data.clone(), &options.freed)?;
+    let targets = targets(&problem, options)?;
+    let found = run_design(&problem, &targets, &speeds, options)?;
+    Ok((problem, found))
 }
 
 /// Speeds that could be measured.
@@ -116,7 +150,8 @@ pub fn run_design(
     let errors = ExpectedErrors::like(problem.data());
     let candidates = problem.candidates(&fit, &ways, speeds, &errors).map_err(user)?;
     let picks = arguments.picks.0;
-    let found = design(problem.parameters(), &fit, &candidates, targets, picks).map_err(user)?;
+    let found = hertzchain_infer::design(problem.parameters(), &fit, &candidates, targets, picks)
+        .map_err(user)?;
     let aims = found.aims.iter().enumerate();
     let (names, units) = aims.map(|(at, aim)| called(problem, at, aim)).unzip();
     let label = |at: usize| problem.residual_label(at);

@@ -1,8 +1,11 @@
 //! What went wrong, described to people.
 
 use crate::options::{SimulationOptions as How, has_unit};
-use hertzchain_experiment::{Experiment, Finding, Mistakes, PathError, UnknownName, Warning};
+use hertzchain_experiment::{
+    Experiment, Finding, Mistakes, OpenError, PathError, UnknownName, Warning,
+};
 use hertzchain_infer::InferError;
+use hertzchain_sim::rig::RigError;
 use hertzchain_sim::{StudyError, parse_speed};
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
 
@@ -29,11 +32,37 @@ impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         match error {
             StudyError::Mistakes(mistakes) => (*mistakes).into(),
-            StudyError::Number(error) => match *error {
-                PathError::Mistakes(mistakes) => mistakes.into(),
-                other => Self::User(other.to_string()),
-            },
+            StudyError::Number(error) => (*error).into(),
             StudyError::Unwritable(why) => Self::Ours(why),
+            other => Self::User(other.to_string()),
+        }
+    }
+}
+
+impl From<RigError> for Failure {
+    fn from(error: RigError) -> Self {
+        match error {
+            RigError::Mistakes(mistakes) => (*mistakes).into(),
+            // A full disk is not the user's mistake.
+            RigError::Record(error) => Self::Ours(error.to_string()),
+            other => Self::User(other.to_string()),
+        }
+    }
+}
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        match error {
+            OpenError::Mistakes(mistakes) => mistakes.into(),
+            other => Self::User(other.to_string()),
+        }
+    }
+}
+
+impl From<PathError> for Failure {
+    fn from(error: PathError) -> Self {
+        match error {
+            PathError::Mistakes(mistakes) => mistakes.into(),
             other => Self::User(other.to_string()),
         }
     }

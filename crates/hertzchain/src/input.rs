@@ -15,7 +15,7 @@ use std::path::Path;
 const USUAL: &str = "dry";
 
 /// Opens the file or the preset; the paper's dry chain where neither is named.
-pub fn open(input: &Input) -> Result<Experiment, Failure> {
+pub(crate) fn open(input: &Input) -> Result<Experiment, Failure> {
     open_or(input, USUAL)
 }
 
@@ -31,7 +31,8 @@ pub(crate) fn open_or(input: &Input, usual: &str) -> Result<Experiment, Failure>
 
 /// That an experiment which was not named is the paper's dry chain: the first line of what
 /// comes of it.
-pub fn assumed(input: &Input) -> Option<String> {
+#[must_use]
+pub(crate) fn assumed(input: &Input) -> Option<String> {
     let is_named = input.file.is_some() || input.preset.is_some();
     (!is_named).then(|| assumed_preset("experiment", "dry chain", USUAL, "FILE or --preset NAME"))
 }
@@ -61,14 +62,20 @@ fn open_file(file: &Path) -> Result<Experiment, Failure> {
 }
 
 /// The speed asked for, if it suits the experiment's units.
-pub fn speed(given: Option<&Given>, experiment: &Experiment) -> Result<Option<f64>, Failure> {
+pub(crate) fn speed(
+    given: Option<&Given>,
+    experiment: &Experiment,
+) -> Result<Option<f64>, Failure> {
     given.map_or(Ok(()), |given| given.check("--speed", experiment.units()))?;
     Ok(given.map(Given::value))
 }
 
 /// What an experiment gives at a speed; a speed of the command line that does
 /// not do is reported as such.
-pub fn at_speed<T>(given: Option<&Given>, result: Result<T, Mistakes>) -> Result<T, Failure> {
+pub(crate) fn at_speed<T>(
+    given: Option<&Given>,
+    result: Result<T, Mistakes>,
+) -> Result<T, Failure> {
     result.map_err(|mistakes| match given {
         Some(given) => Failure::at_option(&option(given), mistakes),
         None => mistakes.into(),
@@ -76,12 +83,13 @@ pub fn at_speed<T>(given: Option<&Given>, result: Result<T, Mistakes>) -> Result
 }
 
 /// The option by which a speed was given.
-pub fn option(given: &Given) -> String {
+#[must_use]
+pub(crate) fn option(given: &Given) -> String {
     format!("--speed {}", given.text())
 }
 
 /// Refuses times that do not suit the experiment's units.
-pub fn check_times(how: &How, experiment: &Experiment) -> Result<(), Failure> {
+pub(crate) fn check_times(how: &How, experiment: &Experiment) -> Result<(), Failure> {
     for (option, given) in [("--step", &how.step), ("--duration", &how.duration)] {
         if let Some(given) = given {
             given.check(option, experiment.units())?;
@@ -110,7 +118,7 @@ pub fn instruction_set() -> Result<InstructionSet, Failure> {
 }
 
 /// Puts what the command line says in place of what the experiment says.
-pub fn adjust(how: &How, plan: &mut Plan) {
+pub(crate) fn adjust(how: &How, plan: &mut Plan) {
     plan.accuracy = how.accuracy.map_or(plan.accuracy, |accuracy| accuracy.0);
     let step = how.step.as_ref().map(Given::value);
     let duration = how.duration.as_ref().map(Given::value);
@@ -136,7 +144,7 @@ pub fn adjust(how: &How, plan: &mut Plan) {
 }
 
 /// Refuses a step for a solver that chooses its own, and a duration without end.
-pub fn check_effort(how: &How, plan: &Plan, units: Units) -> Result<(), Failure> {
+pub(crate) fn check_effort(how: &How, plan: &Plan, units: Units) -> Result<(), Failure> {
     if how.step.is_some() && plan.solver == study::Solver::Adaptive {
         return Err(Failure::User(
             "the adaptive solver chooses its own steps; --step needs --solver rk4 or verlet".into(),

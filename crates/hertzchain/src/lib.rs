@@ -1,35 +1,71 @@
 //! Rows of beads and their solitary waves: predict, measure, infer.
 //!
-//! What the program `hertzchain` does, from memory: [`measure()`] turns recordings into times of flight,
-//! [`fit()`] turns these into parameters of an experiment. Options of each verb are one struct in
-//! [`options`]; mistakes are [`Failure`]s that print as reports.
+//! A row of touching balls is hit at one end, and a solitary wave runs down it. This crate has what
+//! the program `hertzchain` has, from memory. One `use` brings it: [`prelude`].
+//!
+//! An [`Experiment`](prelude::Experiment) is a row with its striker, from a file, a preset or a text.
+//! Options of a verb are one struct in [`options`]; results are structs that serialise in SI; mistakes
+//! are a [`Failure`] that prints as a report.
 //!
 //! ```
 //! use hertzchain::prelude::*;
 //!
-//! // The paper's dry row; `Experiment::open("row.toml")` reads your own.
-//! let row = preset("dry")?;
+//! // `Experiment::open("row.toml")` reads a file, `preset("dry")` is the paper's dry row.
+//! let row = Experiment::from_text("row", r#"
+//!     [materials]
+//!     steel = { young_modulus = "213 GPa", poisson_ratio = 0.3, density = "7.96 g/cm^3", shear_viscosity = "32 kPa s" }
+//!     [striker]
+//!     speed = "0.5 m/s"
+//!     [[beads]]
+//!     count = 20
+//!     radius = "6.35 mm"
+//!     material = "steel"
+//!     [[contacts]]
+//!     laws = ["elastic_hertz", "damping_viscoelastic"]
+//!     [sensors]
+//!     bead = 5
+//! "#)?;
 //!
-//! // Predict: one shot at 0.5 m/s.
-//! let (plan, _warnings) = Plan::from_experiment(&row, Some(0.5))?;
-//! let shot = shoot(&plan)?;
-//! let incident_s = shot.flight.expect("the pulse reaches the wall").incident_s;
-//! assert!((1e6 * incident_s - 756.0).abs() < 20.0);
+//! // Predict: a shot at 0.5 m/s, and times of flight against speed.
+//! let one = shot(&row, &ShotOptions::at(0.5))?;
+//! let flight = one.flight.expect("the pulse reaches the wall");
+//! let speeds = SweepOptions { speeds: "0.2,0.5,1".to_owned(), ..SweepOptions::default() };
+//! let swept = sweep(&row, &speeds)?;
+//! assert_eq!(swept.points[1].speed_m_s, 0.5);
 //!
-//! // Infer: which viscosity gives this time?
-//! let table = format!(
-//!     "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n0.5,1e-4,{incident_s},2e-7\n"
-//! );
-//! let options = FitOptions::free(["eta"]);
-//! let data = inference::parsed("one shot", &table, &options.measured, None)?;
-//! let found = fit(&data, &row, &options)?;
-//! assert!((found.inferred.fit.point[0] / 3.2e4 - 1.0).abs() < 1e-2);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! // Measure: sample the sensors at 1 MHz and pick the pulses, as from a recording.
+//! let mut records = Vec::new();
+//! for speed_m_s in [0.2, 0.5, 1.0] {
+//!     let options = ShotOptions::at(speed_m_s);
+//!     let mut prepared = PreparedShot::new(&row, &options)?;
+//!     prepared.plan = prepared.plan.watching(row.sensors(), Some(1e-6));
+//!     let trace = prepared.run()?.shot.trace.expect("sensors are watched");
+//!     let channel = |volts| Channel { volts, ..Channel::default() };
+//!     records.push(Record {
+//!         file: format!("{speed_m_s} m/s").into(),
+//!         interval_s: 1e-6,
+//!         channels: trace.columns.into_iter().map(channel).collect(),
+//!         speed_m_s: Some(speed_m_s),
+//!         speed_error_m_s: Some(1e-4),
+//!         ..Record::default()
+//!     });
+//! }
+//! let measured = measure_records(records, &MeasureOptions::default())?;
+//! let curve = measured.curve("")?;
+//!
+//! // Infer: the viscosity of the steel from these times of flight.
+//! let found = fit(&curve, &row, &FitOptions::free(["eta"]))?;
+//! let eta_pa_s = found.inferred.fit.point[0];
+//! assert!((eta_pa_s / 32e3 - 1.0).abs() < 0.05, "{eta_pa_s}");
+//! # assert!(flight.reflected_s.is_some());
+//! # Ok::<(), hertzchain::Failure>(())
 //! ```
 
-pub mod bibliography;
+mod bibliography;
+pub mod campaign;
 mod contact;
-pub mod csv;
+mod csv;
+pub mod describe;
 pub mod design;
 #[cfg(feature = "explore")]
 pub mod explorer;
@@ -37,20 +73,30 @@ pub mod failure;
 pub mod fit;
 pub mod gauge;
 pub mod inference;
-pub mod input;
-pub mod json;
+mod input;
 pub mod laws;
 pub mod measure;
-pub mod missing;
+mod missing;
 pub mod options;
 #[cfg(not(target_family = "wasm"))]
 pub mod program;
-pub mod quantity;
-pub mod table;
+mod quantity;
+pub mod records;
+pub mod shot;
+pub mod sweep;
+mod table;
 
+pub use campaign::campaign;
+pub use describe::{Description, check, theory};
+pub use design::design;
 pub use failure::Failure;
 pub use fit::fit;
+pub use gauge::gauge;
+pub use input::instruction_set;
 pub use measure::measure;
+pub use records::measure_records;
+pub use shot::shot;
+pub use sweep::sweep;
 
 /// The page's examples, compiled and run with the tests.
 #[cfg(doctest)]
@@ -59,11 +105,21 @@ pub struct UseFromRust;
 
 /// What most programs need, by one `use`.
 pub mod prelude {
+    pub use crate::campaign::{PreparedCampaign, campaign};
+    pub use crate::describe::{Description, check, theory};
+    pub use crate::design::{DesignResult, design};
     pub use crate::fit::{FitResult, fit};
+    pub use crate::gauge::{GaugeResult, gauge};
     pub use crate::measure::{MeasureResult, measure};
-    pub use crate::options::{FitOptions, MeasureOptions, from_json};
+    pub use crate::options::{
+        CampaignOptions, CheckOptions, DesignOptions, FitOptions, GaugeOptions, MeasureOptions,
+        Method, ShotOptions, SweepOptions, from_json,
+    };
+    pub use crate::records::{Channel, Record, measure_records};
+    pub use crate::shot::{PreparedShot, ShotResult, shot};
+    pub use crate::sweep::{SweepResult, sweep};
     pub use crate::{Failure, inference};
     pub use hertzchain_experiment::{Experiment, preset};
     pub use hertzchain_infer::Data;
-    pub use hertzchain_sim::{Plan, shoot};
+    pub use hertzchain_sim::{Batch, Plan, Shard, shoot};
 }

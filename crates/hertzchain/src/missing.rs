@@ -7,7 +7,8 @@ use hertzchain_experiment::Units;
 use hertzchain_measure::signal::FitError;
 
 /// The reason, as the end of a sentence.
-pub fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String {
+#[must_use]
+pub(crate) fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String {
     let time = |time_s: f64| Style::brief(units).quantity(time_s, "s");
     match (far, error) {
         (FarEnd::Free | FarEnd::Periodic { .. }, _) => "the chain has no wall".to_owned(),
@@ -25,7 +26,8 @@ pub fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String {
 }
 
 /// Why times of flight have no power law.
-pub fn law(error: &FitError) -> String {
+#[must_use]
+pub(crate) fn law(error: &FitError) -> String {
     match error {
         FitError::TooFew => "fewer than two speeds have a time of flight".to_owned(),
         error => error.to_string(),

@@ -19,32 +19,36 @@ const PREFIXES: [(f64, &str); 8] = [
 
 /// How numbers are written.
 #[derive(Clone, Copy, Debug)]
-pub struct Style {
+pub(crate) struct Style {
     /// Significant digits.
-    pub digits: usize,
+    pub(crate) digits: usize,
     /// Whether numbers have units.
-    pub units: Units,
+    pub(crate) units: Units,
 }
 
 impl Style {
     /// Digits that an accuracy is worth, one to spare.
+    #[must_use]
     pub(crate) fn of_accuracy(accuracy: f64, units: Units) -> Self {
         let digits = (-accuracy.log10()).ceil().clamp(3.0, 15.0) as usize + 1;
         Self { digits, units }
     }
 
     /// A few digits, for what need not be exact.
+    #[must_use]
     pub(crate) fn brief(units: Units) -> Self {
         Self { digits: 6, units }
     }
 
     /// A number with its unit, with a prefix where that is usual.
-    pub fn quantity(self, value: f64, unit: &str) -> String {
+    #[must_use]
+    pub(crate) fn quantity(self, value: f64, unit: &str) -> String {
         self.scaled(value, unit, digits)
     }
 
     /// The same with all digits, zeros at the end too: they are known.
-    pub fn exact(self, value: f64, unit: &str) -> String {
+    #[must_use]
+    pub(crate) fn exact(self, value: f64, unit: &str) -> String {
         self.scaled(value, unit, |value, digits| {
             format!("{value:.*}", decimals(value.abs(), digits))
         })
@@ -69,13 +73,15 @@ impl Style {
 }
 
 /// Decimals that give a number of this size so many significant digits.
-pub fn decimals(size: f64, digits: usize) -> usize {
+#[must_use]
+pub(crate) fn decimals(size: f64, digits: usize) -> usize {
     let whole = if size > 0.0 && size.is_finite() { size.log10().floor() as i32 + 1 } else { 1 };
     usize::try_from(digits as i32 - whole).unwrap_or(0).min(15)
 }
 
 /// A number with so many significant digits, trailing zeros dropped.
-pub fn digits(value: f64, digits: usize) -> String {
+#[must_use]
+pub(crate) fn digits(value: f64, digits: usize) -> String {
     let rounded = format!("{value:.*e}", digits.saturating_sub(1));
     let number: f64 = rounded.parse().unwrap_or(value);
     match number.abs() {

@@ -122,8 +122,10 @@ fn a_shot_writes_traces_figures_arrays_and_a_moving_picture() {
         "energy.csv",
         "energy.png",
         "energy.svg",
+        "experiment.toml",
         "force_n.npy",
         "position_m.npy",
+        "shot.json",
         "signals.png",
         "signals.svg",
         "time_s.npy",
@@ -137,6 +139,28 @@ fn a_shot_writes_traces_figures_arrays_and_a_moving_picture() {
     assert!(fs::read(out.join("position_m.npy")).unwrap().starts_with(b"\x93NUMPY"));
     let page = fs::read_to_string(out.join("animation.html")).unwrap();
     assert!(page.contains("</html>") && !page.contains("src=\"http"));
+}
+
+#[test]
+fn a_shot_keeps_what_was_shot_and_replaces_another_only_if_asked() {
+    let folder = folder("kept");
+    let path = folder.to_str().unwrap();
+    let again = ["shot", "-p", "hertz", "--speed", "0.25", "-a", "1e-5", "--out", path, "--force"];
+    good(&again[..again.len() - 1]);
+    let read = |name: &str| fs::read_to_string(folder.join(name)).unwrap();
+    let kept: Value = serde_json::from_str(&read("shot.json")).unwrap();
+    assert_eq!(kept["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!((&kept["experiment"], &kept["speed_m_s"]), (&"hertz.toml".into(), &0.25.into()));
+    assert_eq!(kept["options"]["accuracy"], 1e-5);
+    assert_eq!(read("experiment.toml"), good(&["presets", "hertz"]));
+    assert!(read("signals.svg").contains("0.25 m/s"));
+    let message = refused(&["shot", "-p", "dry", "--out", path]);
+    assert!(
+        message.contains("shot.json is there already") && message.contains("--force"),
+        "{message}"
+    );
+    assert!(read("shot.json").contains("hertz.toml"));
+    good(&again);
 }
 
 #[test]

@@ -26,6 +26,6 @@ pub use curves::{Case, Curves, Grouping, Laws, SpeedRow, UnmeasuredSpeed, WetOve
 pub use error::MeasureError;
 pub use level::Level;
 pub use list::ShotList;
-pub use run::{Cut, Measurement, Note, Options, Watch, measure};
+pub use run::{Cut, Measurement, Note, Options, Watch, measure, measure_records};
 pub use shot::{Example, Shot};
 pub use table::{laws_csv, ratios_csv, shots_csv, speeds_csv, write_shots};

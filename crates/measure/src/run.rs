@@ -2,7 +2,7 @@
 
 use crate::error::file_name;
 use crate::level::AtLevel;
-use crate::records::{Parts, ReadOptions, Record, read};
+use crate::records::{Parts, ReadOptions, Record, Records, read};
 use crate::separation::{Content, content};
 use crate::signal::{Bandwidth, Method, QualityFlag, SignalOptions};
 use crate::{Example, Level, MeasureError, Shot, ShotList};
@@ -103,9 +103,32 @@ type Done = (Shot, Option<(usize, usize)>);
 /// Holds two batches of records at a time, one being read while the other is measured: a recording
 /// may be larger than memory. Results do not depend on the number of threads.
 pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measurement {
+    let records = files.iter().flat_map(|file| cut(file, options, |how| read(file, how)));
+    let mut measurement = measured_one_by_one(records, options, watch);
+    if let Some(list) = &options.list {
+        measurement.unmatched = list.unmatched(files, &measurement.shots);
+    }
+    measurement
+}
+
+/// Measures records in memory, as those of files: each is a shot, or a recording of several that is
+/// cut. Their `file` is a name.
+#[must_use]
+pub fn measure_records(records: Vec<Record>, options: &Options, watch: &dyn Watch) -> Measurement {
+    let records = records.into_iter().flat_map(|record| {
+        let file = record.file.clone();
+        cut(&file, options, |how| Records::of(record, how))
+    });
+    measured_one_by_one(records, options, watch)
+}
+
+fn measured_one_by_one(
+    records: impl Iterator<Item = Read>,
+    options: &Options,
+    watch: &dyn Watch,
+) -> Measurement {
     let mut measurement =
         Measurement { bandwidth: options.measuring.bandwidth, ..Measurement::default() };
-    let records = files.iter().flat_map(|file| records(file, options));
     let mut records = records.take_while(|_| !watch.stopped());
     let (mut refused, mut speeds) = (Vec::new(), IndexMap::new());
     let mut batch = gather(&mut records, &mut refused);
@@ -135,22 +158,23 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
     }
     measurement.refused.splice(0..0, refused);
     measurement.note_repairs();
-    if let Some(list) = &options.list {
-        measurement.unmatched = list.unmatched(files, &measurement.shots);
-    }
     measurement
 }
 
-/// The records of a file, cut at a level if one is given.
-fn records(file: &Path, options: &Options) -> Box<dyn Iterator<Item = Read>> {
+/// The records of a recording, cut at a level if one is given.
+fn cut(
+    file: &Path,
+    options: &Options,
+    read: impl FnOnce(&ReadOptions) -> Records,
+) -> Box<dyn Iterator<Item = Read>> {
     let of = file.to_owned();
     let refused = move |error: MeasureError| (of.clone(), error);
     let Cut::Level(level) = options.cutting else {
-        let records = read(file, &options.reading);
+        let records = read(&options.reading);
         return Box::new(records.map(move |record| record.map_err(&refused)));
     };
     let pieces = ReadOptions { parts: Parts::Pieces(PIECE), ..options.reading.clone() };
-    let cut = AtLevel::new(read(file, &pieces), level);
+    let cut = AtLevel::new(read(&pieces), level);
     Box::new(cut.map(move |record| record.map_err(&refused)))
 }
 

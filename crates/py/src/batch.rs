@@ -1,20 +1,19 @@
 //! Many shots: over speeds, over arrays of named numbers, in shards.
 
-use crate::columns::{Columns, copied, list, summary};
+use crate::columns::{self, Columns, copied, list};
 use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
+use crate::options::parsed;
 use hertzchain::failure::{Failure, of_speed};
-use hertzchain::options::{SimulationOptions, parsed};
-use hertzchain::{input, json as results};
-use hertzchain_sim::{
-    Batch, BatchOptions, BatchResult, COLUMNS, Column, ErrorControl, Plan, Shard, StudyError,
-    parse_speeds, stopped,
-};
+use hertzchain::options::SweepOptions;
+use hertzchain::sweep::{self, SweepSummary};
+use hertzchain_sim::{Batch, BatchResult, COLUMNS, Shard, StudyError, parse_speeds, stopped};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Speeds from text: "0.1,0.2", "FROM:TO:COUNT", "log:FROM:TO:COUNT".
@@ -23,57 +22,6 @@ pub(crate) fn speeds<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, Py
     let list = parse_speeds(text);
     let list = list.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
     Ok(list.into_pyarray(py))
-}
-
-/// Settings of a batch.
-#[derive(Clone, FromPyObject, IntoPyObject)]
-pub(crate) struct Asked {
-    #[pyo3(item)]
-    options: Vec<String>,
-    #[pyo3(item)]
-    rebound: bool,
-    #[pyo3(item)]
-    error_control: String,
-    #[pyo3(item)]
-    threads: usize,
-}
-
-impl Asked {
-    fn options(&self, experiment: &Experiment) -> Result<BatchOptions, Failure> {
-        let how: SimulationOptions = parsed("sweep", &self.options)?;
-        let plan = representative(experiment, &how)?;
-        let error_control = match self.error_control.as_str() {
-            "per-shot" => ErrorControl::PerShot,
-            "calibrated" => ErrorControl::Calibrated,
-            "none" => ErrorControl::None,
-            other => {
-                return Err(Failure::User(format!(
-                    "error_control = {other:?}: expected \"per-shot\" or \"calibrated\""
-                )));
-            }
-        };
-        Ok(BatchOptions {
-            accuracy: plan.accuracy,
-            solver: plan.solver,
-            duration_s: plan.duration_s,
-            pick: plan.pick,
-            rebound: self.rebound,
-            checked: how.check,
-            error_control,
-            set: input::instruction_set()?,
-        })
-    }
-}
-
-/// A plan at the experiment's own speed, to reject options before any work.
-fn representative(experiment: &Experiment, how: &SimulationOptions) -> Result<Plan, Failure> {
-    let inner = &experiment.inner;
-    inner.needs_striker("shots at several speeds need a chain with a striker")?;
-    input::check_times(how, inner)?;
-    let (mut plan, _warnings) = Plan::from_experiment(inner, None)?;
-    input::adjust(how, &mut plan);
-    input::check_effort(how, &plan, inner.units())?;
-    Ok(plan)
 }
 
 /// Why a row has no shot.
@@ -89,12 +37,12 @@ fn why(error: &StudyError) -> String {
 #[pyclass(frozen, module = "hertzchain._hertzchain")]
 pub struct Run {
     batch: Batch,
-    accuracy: f64,
+    threads: usize,
     experiment: Experiment,
     speeds_m_s: Vec<f64>,
     names: Vec<String>,
     values: Vec<Vec<f64>>,
-    asked: Asked,
+    options: String,
 }
 
 #[pymethods]
@@ -106,28 +54,21 @@ impl Run {
         speeds_m_s: PyReadonlyArrayDyn<'_, f64>,
         names: Vec<String>,
         values: Vec<PyReadonlyArrayDyn<'_, f64>>,
-        asked: Asked,
+        options: String,
     ) -> PyResult<Self> {
         let speeds_m_s = copied(py, &speeds_m_s)?;
         let values: PyResult<Vec<_>> = values.iter().map(|array| copied(py, array)).collect();
         let values = values?;
-        let options = asked.options(experiment).map_err(Failed::from)?;
-        let accuracy = options.accuracy;
-        let batch = Batch::new(&experiment.inner, speeds_m_s.clone(), options);
+        let asked: SweepOptions = parsed("sweep", &options)?;
+        let batch = sweep::batch(&experiment.inner, speeds_m_s.clone(), &asked);
         let mut batch = batch.map_err(Failed::from)?;
         for (name, values) in names.iter().zip(&values) {
             let with = batch.with_number(name, values.clone());
             batch = with.map_err(Failed::from)?;
         }
-        Ok(Self {
-            batch,
-            accuracy,
-            experiment: experiment.clone(),
-            speeds_m_s,
-            names,
-            values,
-            asked,
-        })
+        let threads = asked.threads.map_or(0, |threads| threads.0);
+        let experiment = experiment.clone();
+        Ok(Self { batch, threads, experiment, speeds_m_s, names, values, options })
     }
 
     fn __reduce__<'py>(
@@ -140,7 +81,7 @@ impl Run {
             self.speeds(py),
             self.names.clone(),
             self.values(py),
-            self.asked.clone(),
+            self.options.clone(),
         );
         Ok((class, parts.into_pyobject(py)?))
     }
@@ -169,10 +110,10 @@ impl Run {
         is_curve: bool,
         progress: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (mut columns, mut errors, mut warnings) = (Columns::default(), vec![], vec![]);
-        let (result, calibration) = Job::pooled(progress, self.asked.threads).run(py, |stop| {
+        let (mut table, mut errors, mut warnings) = (Columns::default(), vec![], vec![]);
+        let (result, calibration) = Job::pooled(progress, self.threads).run(py, |stop| {
             let done = self.batch.run_each(Shard::WHOLE, &|| stop.count(1), |row| {
-                columns.push(row.shot.as_ref().ok());
+                table.push(row.shot.as_ref().ok());
                 errors.extend(row.shot.err().map(|error| (row.place, why(&error))));
                 if is_curve && !row.warnings.is_empty() {
                     warnings.push((row.place, row.warnings));
@@ -183,24 +124,17 @@ impl Run {
                 false => Ok(done),
             }
         })?;
-        let BatchResult { rows, error_control, .. } = result;
-        let found = if is_curve {
-            let laws = [Column::Incident, Column::Reflected].map(|of| rows.law(of, self.accuracy));
-            let laws = laws.each_ref().map(|(law, least)| (law, least.clone()));
-            let found = results::outline(&self.experiment.inner, calibration.as_ref(), laws);
-            let found = json::object(py, &found)?.cast_into::<PyDict>()?;
-            errors = rows.failed.into_iter().map(|it| (it.place, it.why)).collect();
+        let summary = SweepSummary::new(&self.experiment.inner, &result, calibration.as_ref());
+        let found = json::object(py, &json!(summary))?.cast_into::<PyDict>()?;
+        if is_curve {
+            errors = result.rows.failed.into_iter().map(|it| (it.place, it.why)).collect();
             found.set_item("warnings", list(py, warnings)?)?;
-            found
         } else {
-            let found = PyDict::new(py);
-            found.set_item("warnings", summary(rows.warnings))?;
-            found
-        };
-        found.set_item("error_control", error_control)?;
+            found.set_item("warnings", columns::summary(result.rows.warnings))?;
+        }
         found.set_item("speed_m_s", self.speeds(py))?;
         found.set_item("values", self.values(py))?;
-        found.set_item("columns", columns.arrays(py)?)?;
+        found.set_item("columns", table.arrays(py)?)?;
         found.set_item("errors", list(py, errors)?)?;
         Ok(found)
     }
@@ -236,6 +170,6 @@ pub(crate) fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'p
     let found = PyDict::new(py);
     found.set_item("columns", columns)?;
     found.set_item("errors", list(py, errors)?)?;
-    found.set_item("warnings", summary(whole.rows.warnings))?;
+    found.set_item("warnings", columns::summary(whole.rows.warnings))?;
     Ok(found)
 }

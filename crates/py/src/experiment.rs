@@ -1,6 +1,6 @@
 //! Experiments: read, looked into, changed, pickled.
 
-use crate::failure::{Failed, of_file, of_path};
+use crate::failure::Failed;
 use hertzchain::failure::Failure;
 use hertzchain_experiment as experiment;
 use hertzchain_experiment::Units;
@@ -55,12 +55,12 @@ impl Experiment {
         let inner = match &change {
             ExperimentChange::Numbers(values) => {
                 let values: Vec<_> = values.iter().map(|(path, v)| (path.as_str(), *v)).collect();
-                self.inner.set(&values).map_err(of_path)?
+                self.inner.set(&values)?
             }
             ExperimentChange::Texts(values) => {
                 let values = values.iter().map(|(path, v)| (path.as_str(), v.as_str()));
                 let values: Vec<_> = values.collect();
-                self.inner.set_text(&values).map_err(of_path)?
+                self.inner.set_text(&values)?
             }
             ExperimentChange::Case(name) => {
                 let found = self.inner.case(name);
@@ -94,8 +94,7 @@ impl Experiment {
     /// Experiment
     #[staticmethod]
     fn open(path: std::path::PathBuf) -> Result<Self, Failed> {
-        let read = experiment::Experiment::open(path);
-        Ok(Self::read(read.map_err(of_file)?))
+        Ok(Self::read(experiment::Experiment::open(path)?))
     }
 
     /// Reads an experiment from text: see `hertzchain.build`.
@@ -113,6 +112,26 @@ impl Experiment {
         Ok(Self::read(experiment::Experiment::from_text(name, text)?))
     }
 
+    /// Builds an experiment from tables as JSON: see `hertzchain.build`.
+    ///
+    /// Parameters
+    /// ----------
+    /// name, tables : str
+    ///     The name that messages use, and the tables.
+    ///
+    /// Returns
+    /// -------
+    /// Experiment
+    #[staticmethod]
+    fn from_tables(name: &str, tables: &str) -> Result<Self, Failed> {
+        let wrong = |error: &dyn std::fmt::Display| {
+            Failure::User(format!("an experiment holds texts, numbers, lists and dicts: {error}"))
+        };
+        let tables: toml::Table = serde_json::from_str(tables).map_err(|error| wrong(&error))?;
+        let text = toml::to_string(&tables).map_err(|error| wrong(&error))?;
+        Self::from_text(name, &text)
+    }
+
     /// An experiment that comes with the program: see `hertzchain.preset`.
     ///
     /// Parameters
@@ -124,9 +143,7 @@ impl Experiment {
     /// Experiment
     #[staticmethod]
     fn preset(name: &str) -> Result<Self, Failed> {
-        let found = experiment::preset(name);
-        let found = found.map_err(|error| Failure::User(error.to_string()))?;
-        Ok(Self::read(found))
+        Ok(Self::read(experiment::preset(name)?))
     }
 
     #[staticmethod]
@@ -226,7 +243,7 @@ impl Experiment {
     /// OptionError
     ///     A path that is no number's, or several'.
     fn get(&self, path: &str) -> Result<f64, Failed> {
-        Ok(self.inner.get(path).map_err(of_path)?)
+        Ok(self.inner.get(path)?)
     }
 
     /// This experiment with numbers set.

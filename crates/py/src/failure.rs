@@ -1,7 +1,7 @@
 //! Failures as Python's exceptions, with the reports of the command line.
 
 use hertzchain::failure::{self, Failure};
-use hertzchain_experiment::{Finding, Mistakes, OpenError, PathError};
+use hertzchain_experiment::{Finding, Mistakes};
 use hertzchain_measure::records::without_controls as plain;
 use miette::Diagnostic;
 use pyo3::prelude::*;
@@ -16,22 +16,6 @@ pub struct Failed(Failure);
 impl<E: Into<Failure>> From<E> for Failed {
     fn from(error: E) -> Self {
         Self(error.into())
-    }
-}
-
-/// A path or its value; what is wrong in the file has its place.
-pub(crate) fn of_path(error: PathError) -> Failure {
-    match error {
-        PathError::Mistakes(mistakes) => mistakes.into(),
-        other => Failure::User(other.to_string()),
-    }
-}
-
-/// A file that can't be used.
-pub(crate) fn of_file(error: OpenError) -> Failure {
-    match error {
-        OpenError::Mistakes(mistakes) => mistakes.into(),
-        other => Failure::User(other.to_string()),
     }
 }
 

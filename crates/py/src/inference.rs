@@ -4,15 +4,15 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::job::Job;
 use crate::json;
+use crate::options::parsed;
 use hertzchain::failure::Failure;
 use hertzchain::fit::pulses;
 use hertzchain::inference::{changed, in_case, model, parsed as data, problem, user};
-use hertzchain::options::parsed;
 use hertzchain::options::{
     CurveOptions as Measured, DesignOptions as Design, FitOptions as Fit, GaugeOptions as Gauge,
 };
 use hertzchain::{design as designing, fit as fitting, gauge as gauging};
-use hertzchain_infer::gauge::{Chains, known_oils, oils};
+use hertzchain_infer::gauge::oils;
 use hertzchain_infer::{CurveProblem, Data};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
@@ -28,15 +28,14 @@ fn read((name, text): &Table, measured: &Measured, case: Option<&String>) -> Res
 
 /// Contact parameters from times of flight.
 #[pyfunction]
-#[pyo3(signature = (table, experiment, options, progress))]
 pub(crate) fn fit<'py>(
     py: Python<'py>,
     table: Table,
     experiment: &Experiment,
-    options: Vec<String>,
+    options: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    found(py, &options, progress, |arguments| {
+    found(py, options, progress, |arguments| {
         let problem = posed(&table, experiment, arguments)?;
         let fit_result = fitting::fit_result(problem, arguments)?;
         left(&fit_result.inferred, arguments)?;
@@ -52,11 +51,11 @@ pub(crate) fn left(inferred: &fitting::Inferred, arguments: &Fit) -> Result<(), 
 
 fn found<'py>(
     py: Python<'py>,
-    options: &[String],
+    options: &str,
     progress: Option<Bound<'py, PyAny>>,
     fit_result: impl FnOnce(&Fit) -> Result<Found, Failure> + Send,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let arguments: Fit = parsed("fit", options).map_err(Failed::from)?;
+    let arguments: Fit = parsed("fit", options)?;
     let threads = arguments.modelled.threads.map_or(0, |threads| threads.0);
     let found = Job::pooled(progress, threads).run(py, |_| fit_result(&arguments))?;
     found.reported(py)
@@ -71,14 +70,13 @@ pub(crate) fn is_table(path: PathBuf, with_options_of_recordings: bool) -> PyRes
 
 /// Contact parameters from whole pulses of recordings.
 #[pyfunction]
-#[pyo3(signature = (experiment, options, progress))]
 pub(crate) fn fit_pulses<'py>(
     py: Python<'py>,
     experiment: &Experiment,
-    options: Vec<String>,
+    options: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    found(py, &options, progress, |arguments| {
+    found(py, options, progress, |arguments| {
         let case = arguments.measured.case.as_deref().unwrap_or_default();
         let inner = in_case(experiment.inner.clone(), case)?;
         let inner = changed(inner, &arguments.modelled.set)?;
@@ -150,25 +148,18 @@ fn samples(inferred: &fitting::Inferred) -> Option<(usize, Vec<f64>)> {
 
 /// What to measure next.
 #[pyfunction]
-#[pyo3(signature = (table, experiment, options, progress))]
 pub(crate) fn design<'py>(
     py: Python<'py>,
     table: Table,
     experiment: &Experiment,
-    options: Vec<String>,
+    options: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let arguments: Design = parsed("design", &options).map_err(Failed::from)?;
+    let arguments: Design = parsed("design", options)?;
     let threads = arguments.modelled.threads.map_or(0, |threads| threads.0);
     let found = Job::pooled(progress, threads).run(py, |_| {
         let data = read(&table, &arguments.measured, None)?;
-        let speeds = designing::speeds(&data, &arguments)?;
-        let inner = in_case(experiment.inner.clone(), &data.case)?;
-        let inner = changed(inner, &arguments.modelled.set)?;
-        let model = model(&inner, &arguments.modelled, &arguments.freed)?;
-        let problem: CurveProblem = problem(model, data, &arguments.freed)?;
-        let targets = designing::targets(&problem, &arguments)?;
-        let found = designing::run_design(&problem, &targets, &speeds, &arguments)?;
+        let (problem, found) = designing::design(&data, &experiment.inner, &arguments)?;
         Ok(designing::json(&problem, &found))
     })?;
     json::object(py, &found)
@@ -176,34 +167,27 @@ pub(crate) fn design<'py>(
 
 /// Which oil is on the contacts.
 #[pyfunction]
-#[pyo3(signature = (tables, experiments, more_oils, options, progress))]
 pub(crate) fn gauge<'py>(
     py: Python<'py>,
     tables: (Table, Table),
     experiments: (PyRef<'py, Experiment>, PyRef<'py, Experiment>),
     more_oils: Option<Table>,
-    options: Vec<String>,
+    options: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let arguments: Gauge = parsed("gauge", &options).map_err(Failed::from)?;
+    let arguments: Gauge = parsed("gauge", options)?;
     let (wet_model, dry_model) = (experiments.0.inner.clone(), experiments.1.inner.clone());
     let found =
         Job::pooled(progress, arguments.threads.map_or(0, |threads| threads.0)).run(py, |_| {
             let measured = &arguments.measured;
             let wet = read(&tables.0, measured, arguments.wet_case.as_ref())?;
             let dry = read(&tables.1, measured, arguments.dry_case.as_ref())?;
-            let mut all = known_oils().map_err(|error| Failure::Ours(error.to_string()))?;
+            let mut all = gauging::all_oils(None)?;
             if let Some((name, text)) = &more_oils {
                 all.extend(oils(name, text).map_err(user)?);
             }
-            let chains = Chains {
-                wet: &in_case(wet_model, &wet.case)?,
-                dry: &in_case(dry_model, &dry.case)?,
-                free: &arguments.dry_free,
-                own: &arguments.own,
-                accuracy: arguments.accuracy.0,
-            };
-            let run_gauge = gauging::run_gauge(&chains, (dry, wet), all, arguments.form)?;
+            let chains = [&wet_model, &dry_model];
+            let run_gauge = gauging::gauge([wet, dry], chains, all, &arguments)?;
             let mut reported = gauging::json(&run_gauge);
             reported["options"] = hertzchain::options::recorded(&arguments);
             Ok(reported)

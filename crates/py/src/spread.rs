@@ -4,10 +4,10 @@ use crate::experiment::Experiment;
 use crate::failure::Failed;
 use crate::inference::{Found, Table, left, posed};
 use crate::job::Job;
+use crate::options::parsed;
 use hertzchain::failure::Failure;
 use hertzchain::fit as fitting;
 use hertzchain::options::FitOptions as Fit;
-use hertzchain::options::parsed;
 use hertzchain_infer::{Batch, CurveProblem, ModelError, Outcomes, Problem, Residuals, Spread};
 use hertzchain_sim::{Stop, StudyError, stopped};
 use pyo3::exceptions::PyConnectionError;
@@ -26,7 +26,7 @@ pub struct Likelihood {
     arguments: Fit,
     table: Table,
     experiment: Experiment,
-    options: Vec<String>,
+    options: String,
 }
 
 /// Residuals of a point with their ln σ, or why there are none.
@@ -60,7 +60,7 @@ impl From<SpreadOutcome> for Result<Residuals, ModelError> {
 impl Likelihood {
     #[new]
     #[pyo3(signature = (table, experiment, options))]
-    fn new(table: Table, experiment: &Experiment, options: Vec<String>) -> Result<Self, Failed> {
+    fn new(table: Table, experiment: &Experiment, options: String) -> Result<Self, Failed> {
         let arguments: Fit = parsed("fit", &options)?;
         Ok(Self {
             inner: posed(&table, experiment, &arguments)?,

@@ -4,60 +4,50 @@ use crate::experiment::Experiment;
 use crate::failure::{Failed, finding};
 use crate::job::Job;
 use crate::json;
+use crate::options::parsed;
+use hertzchain::Description;
 use hertzchain::failure::Failure;
-use hertzchain::options::Given;
-use hertzchain::{input, json as results};
-use hertzchain_chain::Chain;
-use hertzchain_experiment as experiment;
-use hertzchain_sim::{Group, StudyError, describe, describe_theory};
+use hertzchain::options::CheckOptions;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde_json::json;
 
-type Describe = fn(&experiment::Experiment, &Chain) -> Result<Vec<Group>, StudyError>;
+type Describe =
+    fn(&hertzchain_experiment::Experiment, &CheckOptions) -> Result<Description, Failure>;
 
 fn described<'py>(
     py: Python<'py>,
     experiment: &Experiment,
-    speed: Option<String>,
+    options: &str,
     describe: Describe,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let inner = &experiment.inner;
-    let given = speed.map(|text| Given::speed(&text)).transpose();
-    let given = given.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
-    let speed_m_s = input::speed(given.as_ref(), inner).map_err(Failed::from)?;
-    let (groups, warnings) = Job::alone().run(py, |_| {
-        // What the physics refuses is reported at its place in the file.
-        input::at_speed(given.as_ref(), inner.system(speed_m_s))?;
-        let (chain, warnings) = input::at_speed(given.as_ref(), inner.chain(speed_m_s))?;
-        Ok((describe(inner, &chain)?, warnings))
-    })?;
+    let options: CheckOptions = parsed("check", options)?;
+    let found = Job::alone().run(py, |_| describe(&experiment.inner, &options))?;
     let described = PyDict::new(py);
-    described.set_item("groups", json::object(py, &results::groups(&groups))?)?;
-    let warnings: PyResult<Vec<_>> = warnings.iter().map(|odd| finding(py, odd)).collect();
+    described.set_item("groups", json::object(py, &json!(found.groups))?)?;
+    let warnings: PyResult<Vec<_>> = found.warnings.iter().map(|it| finding(py, it)).collect();
     described.set_item("warnings", warnings?)?;
     Ok(described)
 }
 
 /// What was understood, in SI, and what follows from it.
 #[pyfunction]
-#[pyo3(signature = (experiment, speed))]
 pub(crate) fn check<'py>(
     py: Python<'py>,
     experiment: &Experiment,
-    speed: Option<String>,
+    options: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
-    described(py, experiment, speed, describe)
+    described(py, experiment, options, hertzchain::check)
 }
 
 /// What theory says of a chain's waves.
 #[pyfunction]
-#[pyo3(signature = (experiment, speed))]
 pub(crate) fn theory<'py>(
     py: Python<'py>,
     experiment: &Experiment,
-    speed: Option<String>,
+    options: &str,
 ) -> PyResult<Bound<'py, PyDict>> {
-    described(py, experiment, speed, describe_theory)
+    described(py, experiment, options, hertzchain::theory)
 }
 
 /// Contact laws with equation, parameters, units and source.
@@ -87,5 +77,5 @@ pub(crate) fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'
 /// What must be the same on all machines: docs/how-to/many-machines.md.
 #[pyfunction]
 pub(crate) fn instruction_set() -> PyResult<&'static str> {
-    Ok(input::instruction_set().map_err(Failed::from)?.name())
+    Ok(hertzchain::instruction_set().map_err(Failed::from)?.name())
 }

@@ -97,7 +97,7 @@ def test_numbers_of_parts_that_are_none_are_refused(small, client, tmp_path):
 
 def test_a_campaign_is_cut_by_its_series(client, tmp_path):
     rig = hc.load(RIG)
-    series = _native.campaign_series(rig, None)
+    series = _native.campaign_series(rig, "{}")
     run = distributed.campaign(rig, tmp_path / "there", client=client)
     assert run.shards == min(series, 8) and not run.failed
     assert distributed.campaign(rig, tmp_path / "here").shards == 1
@@ -368,7 +368,7 @@ def test_a_posterior_goes_on_after_its_scheduler_was_killed(posterior, tmp_path)
 def test_a_poisoned_point_of_a_batch_is_told_and_changes_no_other(posterior, client, tmp_path):
     data, how, here = posterior
     best = [parameter.value for parameter in here.parameters.values()]
-    likelihood = _native.Likelihood(("data", csv(data)), how["model"], ["--free=eta,B", "--tof-error=1e-06", "--", "data"])
+    likelihood = _native.Likelihood(("data", csv(data)), how["model"], '{"free": ["eta", "B"], "tof_error": 1e-6}')
     path = distributed._written(likelihood, tmp_path)
     points = [best, [float("nan"), 77.0], [-1e300, 77.0], best]
 
@@ -401,7 +401,7 @@ def test_a_posterior_goes_on_where_its_chain_stands(posterior, client, tmp_path)
     distributed.fit(data, folder=tmp_path, client=client, **{**how, "steps": 20})
     assert distributed.fit(data, folder=tmp_path, client=client, **how).details["posterior"] == here.details["posterior"]
     other = {**data, "tof_incident_s": 1.1 * data["tof_incident_s"]}
-    with pytest.raises(hc.OptionError, match="--resume"):
+    with pytest.raises(hc.OptionError, match="resume"):
         distributed.fit(other, folder=tmp_path, client=client, **how)
 
 
@@ -412,5 +412,5 @@ def test_what_makes_no_sense_is_refused_before_any_work(small, client, tmp_path)
         distributed.sweep(small, SPEEDS, {"yung_modulus": 1.0}, folder=tmp_path, client=client)
     with pytest.raises(hc.OptionError, match="accuracy|1e-13"):
         distributed.sweep(small, SPEEDS, folder=tmp_path, client=client, accuracy=7.0)
-    with pytest.raises(hc.OptionError, match="--free"):
+    with pytest.raises(hc.OptionError, match="nothing is free"):
         distributed.fit(noisy("dry", 1), free=[], folder=tmp_path, client=client)

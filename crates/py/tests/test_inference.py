@@ -104,7 +104,7 @@ def test_walkers_in_a_folder_are_led_on(dry_data, tmp_path):
     hc.fit(dry_data, folder=tmp_path, steps=40, **how)
     led_on = hc.fit(dry_data, folder=tmp_path, steps=60, **how)
     assert led_on.details["posterior"] == hc.fit(dry_data, steps=60, **how).details["posterior"]
-    with pytest.raises(hc.OptionError, match="--resume"):
+    with pytest.raises(hc.OptionError, match="resume"):
         hc.fit(noisy("dry", 2), folder=tmp_path, steps=60, **how)
 
 
@@ -179,7 +179,7 @@ def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
         ("nowhere.csv", {"free": "B"}, "can't be read"),
         (7, {"free": "B"}, "expected a file"),
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "beta", "tof_error": 1e-6, "speed_error": 1e-6}, "beta"),
-        ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": []}, "--free"),
+        ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": []}, "nothing is free"),
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "B", "method": "guess"}, "posterior"),
     ],
 )

@@ -1,6 +1,7 @@
 """Figures: what they show, read back from the axes."""
 
 import dataclasses
+import runpy
 
 import matplotlib
 
@@ -8,6 +9,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from conftest import ROOT
 from test_inference import noisy
 
 import hertzchain as hc
@@ -59,14 +61,15 @@ def test_ratios_are_not_drawn_where_the_dry_curve_has_no_speeds(small):
 
 
 def test_the_papers_figures_are_of_its_model():
-    axes = plot.figure2()
+    paper = runpy.run_path(str(ROOT / "crates/py/examples/paper_figures.py"))
+    axes = paper["figure2"]()
     assert axes.shape == (4,) and all(ax.lines for ax in axes)
     few = np.array([0.2, 0.6, 1.1])
     dry = hc.sweep(hc.preset("dry"), few)
-    ax = plot.figure3(few)
+    ax = paper["figure3"](few)
     assert np.array_equal(ax.lines[0].get_ydata(), 1e6 * dry.tof_incident_s)
     pump = hc.sweep(hc.preset("pump"), few)
-    line = plot.figure4(few).lines[0]
+    line = paper["figure4"](few).lines[0]
     assert np.allclose(line.get_ydata(), pump.tof_incident_s / dry.tof_incident_s, rtol=1e-12)  # logarithm and back
 
 

@@ -18,7 +18,7 @@ SPEEDS = np.array([0.2, 0.5, 1.0])
 # Of no computation: what goes in, what goes wrong, and parts of what is reported.
 NO_RESULTS = {
     hc.Beads, hc.Contacts, hc.Experiment, hc.FarEnd, hc.ForceLaw, hc.Law, hc.Material, hc.PowerOfSpeed, hc.Striker,
-    hc.Finding, hc.Result, hc.Row, hc.ExperimentError, hc.ExperimentWarning, hc.HertzchainError, hc.InternalError, hc.OptionError,
+    hc.Finding, hc.Result, hc.Row, hc.ExperimentError, hc.ExperimentWarning, hc.HertzchainError, hc.InternalError, hc.MissingFileError, hc.OptionError,
 }  # fmt: skip
 
 

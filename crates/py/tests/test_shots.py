@@ -166,7 +166,7 @@ def test_results_convert_with_units(small):
     assert table.index.name == "speed_m_s" and table.attrs["units"]["tof_reflected_s"] == "s"
     found = hc.ensemble(small, [[0.2], [0.4]], {"young_modulus": [200e9, 210e9, 220e9]})
     data = found.to_xarray()
-    assert data["speed_m_s"].dims == ("axis_0",) and data["young_modulus"].dims == ("axis_1",)
+    assert data["speed_m_s"].dims == ("speed_m_s",) and data["young_modulus"].dims == ("young_modulus",)
     assert data["young_modulus"].attrs["units"] == "Pa" and data["tof_incident_s"].shape == (2, 3)
     assert len(found.to_pandas()) == 6
     shot = hc.shot(small, trace=True)

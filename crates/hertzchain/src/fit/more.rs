@@ -12,6 +12,26 @@ use hertzchain_infer::{
 use hertzchain_sim::note_progress;
 
 /// What a method determines beside the covariance.
+///
+/// ```
+/// use hertzchain::fit::More;
+/// use hertzchain::prelude::*;
+///
+/// let table = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n\
+///              0.2,1e-4,9.030e-4,2e-7\n0.5,1e-4,7.565e-4,2e-7\n1.0,1e-4,6.829e-4,2e-7\n";
+/// let mut options = FitOptions::free(["eta"]);
+/// let data = inference::parsed("table", table, &options.measured, None)?;
+/// options.method = Method::Profile;
+/// let More::Profiles(profiles) = fit(&data, &preset("dry")?, &options)?.inferred.more else {
+///     unreachable!("profiles were asked for")
+/// };
+/// assert!(profiles[0].rise.iter().all(|rise| *rise >= 0.0));
+/// options.method = Method::Posterior;
+/// options.steps = 100; // too few to converge: the chain can be continued
+/// let found = fit(&data, &preset("dry")?, &options)?;
+/// assert!(matches!(&found.inferred.more, More::Sampled(sampled) if sampled.posterior.is_err()));
+/// # Ok::<(), hertzchain::Failure>(())
+/// ```
 pub enum More {
     /// Nothing.
     Nothing,

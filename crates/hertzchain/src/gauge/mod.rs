@@ -34,11 +34,43 @@ pub struct GaugeResult {
     pub oils: Vec<Oil>,
 }
 
+/// Compares known oils with a row's contacts, from times of flight of the wet and of the dry row.
+///
+/// ```no_run
+/// use hertzchain::prelude::*;
+///
+/// let options = GaugeOptions::default();
+/// let measured = measure(&["shots".into()], &MeasureOptions::default())?;
+/// let data = [measured.curve("wet")?, measured.curve("dry")?];
+/// let oils = hertzchain::gauge::all_oils(None)?;
+/// let found = gauge(data, [&preset("pump")?, &preset("dry")?], oils, &options)?;
+/// println!("{:#}", hertzchain::gauge::json(&found)["verdict"]);
+/// # Ok::<(), hertzchain::Failure>(())
+/// ```
+///
+/// # Errors
+/// Data and models that do not fit together; what is in the way of the dry fit or of the verdict.
+pub fn gauge(
+    [wet, dry]: [Data; 2],
+    [wet_row, dry_row]: [&Experiment; 2],
+    oils: Vec<Oil>,
+    options: &Arguments,
+) -> Result<GaugeResult, Failure> {
+    let chains = Chains {
+        wet: &inference::in_case(wet_row.clone(), &wet.case)?,
+        dry: &inference::in_case(dry_row.clone(), &dry.case)?,
+        free: &options.dry_free,
+        own: &options.own,
+        accuracy: options.accuracy.0,
+    };
+    run_gauge(&chains, (dry, wet), oils, options.form)
+}
+
 /// Holds what is measured against models and oils.
 ///
 /// # Errors
 /// What is in the way of the dry fit or of the verdict.
-pub fn run_gauge(
+fn run_gauge(
     chains: &Chains<'_>,
     (dry, wet): (Data, Data),
     oils: Vec<Oil>,

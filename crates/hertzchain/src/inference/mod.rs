@@ -13,7 +13,7 @@ use crate::input;
 use crate::options::Input;
 use crate::options::{
     Assignment, CurveOptions as Measured, ErrorShots, ModelOptions as Modelled,
-    ParameterOptions as Freed, Speed, Threads, What,
+    ParameterOptions as Freed, Speed, What,
 };
 use hertzchain_experiment::{Experiment, PathError, Units};
 use hertzchain_infer::{
@@ -22,7 +22,6 @@ use hertzchain_infer::{
 };
 use hertzchain_measure::records::{peek, text};
 use hertzchain_sim::{StudyError, stopped};
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::fs;
 use std::io::Read;
 use std::path::Path;
@@ -348,7 +347,7 @@ pub fn model(
     freed: &Freed,
 ) -> Result<Model, Failure> {
     if freed.free.is_empty() {
-        return Err(user("nothing is free: --free (free in Python) names numbers, such as eta,B"));
+        return Err(user("nothing is free: --free names numbers, such as eta,B"));
     }
     let number = |name: &String| {
         let plain = name.split(':').next().unwrap_or_default().trim();
@@ -376,12 +375,6 @@ pub fn pulses(problem: PulseProblem, freed: &Freed) -> Result<PulseProblem, Fail
     let mut parameters = problem.parameters().to_vec();
     known::apply(freed, &mut parameters)?;
     problem.with_parameters(parameters).map_err(user)
-}
-
-/// As many threads as asked for.
-pub fn pool(threads: Option<Threads>) -> Result<ThreadPool, Failure> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads.map_or(0, |threads| threads.0)).build();
-    pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
 }
 
 #[cfg(test)]

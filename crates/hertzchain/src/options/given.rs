@@ -32,6 +32,11 @@ impl Given {
         })
     }
 
+    /// Returns a speed in m/s, or dimensionless; one that no striker has is reported when it is used.
+    pub(super) fn plain(value: f64) -> Self {
+        Self { text: value.to_string(), value, has_unit: false, asks_unit: None }
+    }
+
     /// Returns a time; a plain number only suits a dimensionless experiment.
     ///
     /// # Errors

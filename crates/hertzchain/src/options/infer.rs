@@ -1,6 +1,6 @@
 //! Options of the verbs that go from times of flight to parameters.
 
-use super::values::pairs;
+use super::values::{pairs, some_speeds, texts};
 use super::{
     Accuracy, Against, Assignment, Cost, ErrorShots, Few, Frequency, Positive, Preload, Speed,
     Threads, Time,
@@ -188,6 +188,7 @@ pub struct RecordOptions {
     pub rate: Option<Frequency>,
     /// Channel, column or array by name or by number from 1; twice: the sensor bead's, the wall's
     #[arg(long, value_name = "NAME")]
+    #[serde(deserialize_with = "texts")]
     pub channel: Vec<String>,
     /// Corner of the amplifier's low-pass, such as 180kHz, in place of the model's; a plain number is in
     /// Hz. --free low_pass fits it
@@ -284,6 +285,7 @@ pub struct DesignOptions {
     /// Speeds that could be measured: 0.1,0.2,0.5 or FROM:TO:COUNT or log:FROM:TO:COUNT; eight over
     /// the range of the data when absent
     #[arg(long, value_name = "SPEEDS", allow_hyphen_values = true)]
+    #[serde(deserialize_with = "some_speeds")]
     pub speeds: Option<String>,
     /// Pushes on bead 1 that could be tried, such as 0.1N,0.5N; a plain number is in N; `none` for none
     #[arg(

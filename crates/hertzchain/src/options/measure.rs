@@ -1,5 +1,6 @@
 //! Options of `measure`.
 
+use super::values::texts;
 use super::{Corner, Count, Filter, Frequency, Share, Speed, TimeUnit, Voltage};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -65,6 +66,7 @@ pub struct ReadingOptions {
     pub trust_rate: bool,
     /// Channel, column or array by name or by number from 1; twice: the sensor bead's, the wall's
     #[arg(long, value_name = "NAME")]
+    #[serde(deserialize_with = "texts")]
     pub channel: Vec<String>,
     /// Unit of a column of times that names none: s, ms, us or ns
     #[arg(long, value_name = "UNIT")]

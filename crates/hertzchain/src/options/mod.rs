@@ -24,7 +24,7 @@ pub use values::{
 };
 
 use crate::failure::Failure;
-use clap::{Args, Command};
+use clap::{Arg, ArgAction, Args, Command};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -68,9 +68,10 @@ pub fn from_json<A: Args + DeserializeOwned>(
     };
     options.retain(|_, value| !value.is_null());
     let command = A::augment_args(Command::new(verb));
-    let known = |name: &str| command.get_arguments().any(|arg| arg.get_id() == name);
-    if let Some(name) = options.keys().find(|name| !known(name)) {
-        return Err(Failure::User(format!("{verb} has no option `{name}`")));
+    for (name, value) in &mut options {
+        let option = command.get_arguments().find(|arg| arg.get_id() == name.as_str());
+        let unknown = || Failure::User(format!("{verb} has no option `{name}`"));
+        listed(option.ok_or_else(unknown)?, value);
     }
     serde_json::from_value(Value::Object(options.clone())).map_err(|error| {
         // Flattened structs lose the key of a wrong value: each is tried by itself.
@@ -83,6 +84,19 @@ pub fn from_json<A: Args + DeserializeOwned>(
             None => format!("{verb}: {error}"),
         })
     })
+}
+
+/// Makes a single value of an option that takes several a list, split where the option splits it.
+fn listed(option: &Arg, value: &mut Value) {
+    let several =
+        matches!(option.get_action(), ArgAction::Append) || option.get_value_delimiter().is_some();
+    if !several || value.is_array() || value.is_object() {
+        return;
+    }
+    *value = match (value.as_str(), option.get_value_delimiter()) {
+        (Some(text), Some(between)) => text.split(between).map(str::trim).collect(),
+        _ => json!([value]),
+    };
 }
 
 /// Options as a result file records them: without places of files, threads and other things that no

@@ -1,6 +1,7 @@
 //! Options of the verbs that simulate.
 
 use super::given::{some_speed, some_time};
+use super::values::{shard, some_shard, speeds};
 use super::{Accuracy, Given, Threads};
 use clap::{Args, ValueEnum};
 use hertzchain_sim::Shard;
@@ -103,6 +104,10 @@ pub struct ShotOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
+    /// Replace what an earlier shot has left in the folder
+    #[arg(long)]
+    #[serde(skip_serializing)]
+    pub force: bool,
     /// Also write positions, velocities and forces of all bodies as NPY
     #[arg(long, requires = "out")]
     #[serde(skip_serializing)]
@@ -123,6 +128,36 @@ pub enum ErrorControl {
     /// each estimates its own error: ten times as fast. As per shot below 160 shots, and of rows that are not
     /// uniform
     Calibrated,
+    /// By the step for the accuracy asked alone: every shot once, without a bound on its error
+    None,
+}
+
+impl ShotOptions {
+    /// Returns options of a shot at a speed in m/s, or dimensionless where the experiment is.
+    ///
+    /// ```
+    /// use hertzchain::prelude::*;
+    /// assert_eq!(shot(&preset("dry")?, &ShotOptions::at(0.5))?.speed_m_s, Some(0.5));
+    /// # Ok::<(), hertzchain::Failure>(())
+    /// ```
+    #[must_use]
+    pub fn at(speed_m_s: f64) -> Self {
+        Self { speed: Some(Given::plain(speed_m_s)), ..Self::default() }
+    }
+}
+
+impl CheckOptions {
+    /// Returns options of a description at a speed in m/s, or dimensionless where the experiment is.
+    ///
+    /// ```
+    /// use hertzchain::prelude::*;
+    /// assert!(check(&preset("dry")?, &CheckOptions::at(0.5)).is_ok());
+    /// # Ok::<(), hertzchain::Failure>(())
+    /// ```
+    #[must_use]
+    pub fn at(speed_m_s: f64) -> Self {
+        Self { speed: Some(Given::plain(speed_m_s)), ..Self::default() }
+    }
 }
 
 /// Options of `sweep`.
@@ -141,6 +176,7 @@ pub struct SweepOptions {
         default_value = "log:0.075:1.23:25",
         allow_hyphen_values = true
     )]
+    #[serde(deserialize_with = "speeds")]
     pub speeds: String,
     /// How to compute.
     #[command(flatten)]
@@ -157,7 +193,7 @@ pub struct SweepOptions {
     /// Only the i-th of n parts, for several machines, as one file in --out, unless it is there;
     /// `hertzchain merge` puts them together
     #[arg(long, value_name = "i/n", requires = "out", conflicts_with = "json")]
-    #[serde(skip)]
+    #[serde(skip_serializing, deserialize_with = "some_shard")]
     pub shard: Option<Shard>,
     /// Follow the striker until it is away for good and give its velocity; takes the slower loop
     #[arg(long)]
@@ -185,7 +221,7 @@ pub struct CampaignOptions {
     pub out: PathBuf,
     /// Only the i-th of n parts, for several machines: series are dealt out like cards
     #[arg(long, value_name = "i/n", default_value = "1/1")]
-    #[serde(skip)]
+    #[serde(skip_serializing, deserialize_with = "shard")]
     pub shard: Shard,
     /// Seed of all that is random, in place of the experiment's
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]

@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use hertzchain_experiment::units::parse_in;
 use hertzchain_infer::FEWEST_SHOTS;
+use hertzchain_sim::Shard;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -11,7 +12,7 @@ use std::str::FromStr;
 
 /// A JSON value that stands for an option's text.
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number or a text")]
 pub(super) enum Text {
     Whole(i64),
     Number(f64),
@@ -33,6 +34,42 @@ fn from_text<'de, D: Deserializer<'de>, T: FromStr<Err = String>>(
 ) -> Result<T, D::Error> {
     let text = Text::deserialize(source)?;
     text.to_string().parse().map_err(D::Error::custom)
+}
+
+/// A list of texts, some of which may be numbers.
+pub(super) fn texts<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<String>, D::Error> {
+    Ok(Vec::<Text>::deserialize(source)?.iter().map(Text::to_string).collect())
+}
+
+/// A part of a whole as text, such as 1/4.
+pub(super) fn shard<'de, D: Deserializer<'de>>(source: D) -> Result<Shard, D::Error> {
+    Text::deserialize(source)?.to_string().parse().map_err(D::Error::custom)
+}
+
+/// The same where it may be absent.
+pub(super) fn some_shard<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Shard>, D::Error> {
+    shard(source).map(Some)
+}
+
+/// Speeds as text: a range, or a list of numbers.
+pub(super) fn speeds<'de, D: Deserializer<'de>>(source: D) -> Result<String, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected speeds: a range as text, or a list of numbers")]
+    enum Speeds {
+        List(Vec<Text>),
+        One(Text),
+    }
+    Ok(match Speeds::deserialize(source)? {
+        Speeds::List(list) => list.iter().map(Text::to_string).collect::<Vec<_>>().join(","),
+        Speeds::One(text) => text.to_string(),
+    })
+}
+
+/// The same where they may be absent.
+pub(super) fn some_speeds<'de, D: Deserializer<'de>>(
+    source: D,
+) -> Result<Option<String>, D::Error> {
+    speeds(source).map(Some)
 }
 
 /// Declares a number that is read from text, for the command line and JSON alike.

@@ -29,6 +29,19 @@ impl Folder {
         Files::within(path).map(Self).map_err(refused)
     }
 
+    /// Rejects a folder with a file of this name, which another run has written, unless it may be
+    /// replaced.
+    pub(crate) fn keeping(self, name: &str, replace: bool) -> Result<Self, Failure> {
+        let path = self.0.folder().join(name);
+        match path.exists() && !replace {
+            true => Err(Failure::User(format!(
+                "{} is there already, from another run; name another folder by --out, or replace it by --force",
+                path.display()
+            ))),
+            false => Ok(self),
+        }
+    }
+
     /// Writes a file that gets its name with all others.
     pub(crate) fn write(&mut self, name: &str, content: &[u8]) -> Result<(), Failure> {
         self.write_with(name, |file| file.write_all(content))

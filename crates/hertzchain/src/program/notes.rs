@@ -23,7 +23,12 @@ pub(crate) fn with_notes<T: Send>(
         scope.spawn(move || {
             let mut last = String::new();
             while ended.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
-                let note = stop.note();
+                let note = match (stop.note(), stop.done()) {
+                    (note, 1..) if note.is_empty() => {
+                        format!("{} curves of the model computed", stop.done())
+                    }
+                    (note, _) => note,
+                };
                 if note != last {
                     print::note(&note);
                     last = note;

@@ -73,7 +73,11 @@ fn dash(line: usize) -> Dash {
 }
 
 /// Signals of sensors against time, one panel a quantity.
-pub(crate) fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]) -> Figure {
+pub(crate) fn signals(
+    experiment: &Experiment,
+    trace: &Trace,
+    (sensors, title): (&[Sensor], &str),
+) -> Figure {
     let units = experiment.units();
     let clock = Clock::of(&trace.time_s, units);
     let wall = wall(experiment);
@@ -93,7 +97,7 @@ pub(crate) fn signals(experiment: &Experiment, trace: &Trace, sensors: &[Sensor]
         }
     }
     if let Some(first) = charts.first_mut() {
-        *first = first.clone().title(experiment.title());
+        *first = first.clone().title(title);
     }
     let height_mm = 50.0 * charts.len().max(1) as f64 + 12.0;
     let empty = Figure::single_column(height_mm).share_x();

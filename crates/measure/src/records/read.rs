@@ -86,17 +86,7 @@ pub struct Records {
 pub fn read(file: &Path, options: &ReadOptions) -> Records {
     let opened = format_of(file).and_then(|open| open(file, options));
     let records = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
-    Records {
-        records: match options.parts.most() {
-            Some(most) => divided(records, most, options.parts),
-            None => records,
-        },
-        parts: options.parts,
-        are_chosen: !options.channels.is_empty(),
-        length: None,
-        file: file.to_owned(),
-        count: 0,
-    }
+    Records::new(file, records, options)
 }
 
 impl Iterator for Records {
@@ -118,6 +108,27 @@ impl Iterator for Records {
 }
 
 impl Records {
+    /// A record in memory, divided and checked as those of a file.
+    #[must_use]
+    pub fn of(record: Record, options: &ReadOptions) -> Self {
+        let file = record.file.clone();
+        Self::new(&file, Box::new(std::iter::once(Ok(record))), options)
+    }
+
+    fn new(file: &Path, records: Raw, options: &ReadOptions) -> Self {
+        Self {
+            records: match options.parts.most() {
+                Some(most) => divided(records, most, options.parts),
+                None => records,
+            },
+            parts: options.parts,
+            are_chosen: !options.channels.is_empty(),
+            length: None,
+            file: file.to_owned(),
+            count: 0,
+        }
+    }
+
     /// Rejects records without samples, with channels of different lengths, with many samples
     /// that are not finite, with channels that never change unless they are pieces, and shots
     /// that are not as long as the first. Fills single samples that are not finite.

@@ -19,10 +19,10 @@ import os
 import pickle
 import socket
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, wraps
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -32,15 +32,18 @@ from numpy.typing import ArrayLike
 
 from . import _hertzchain as _native
 from . import _options as options
+from . import inference
 from ._hertzchain import Experiment
 from .errors import HertzchainError, InternalError, OptionError
-from .inference import assumed, fit_result, modelled, resumed, table
+from .experiment import opened
 from .results import Ensemble, FitResult, Result
-from .simulation import asked, broadcast, gathered
+from .simulation import broadcast, gathered
 
 if TYPE_CHECKING:
     from dask.distributed import Client, Future
     from typing_extensions import Unpack
+
+    from ._keywords import SweepOptions
 
 __all__ = ["DistributedResult", "campaign", "fit", "sweep"]
 
@@ -184,7 +187,8 @@ def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | 
     """Runs a part of a campaign on a worker."""
 
     def is_stored() -> bool:
-        done = _native.campaign(experiment, out, f"{number}/{of}", seed, threads, None)
+        how = {"out": out, "shard": f"{number}/{of}", "seed": seed, "threads": threads or None}
+        done = _native.campaign(experiment, options.text("campaign", {}, **how), None)
         if done["failed"]:
             raise OptionError("; ".join(done["failed"]))
         return done["kept"] > 0 and done["run"] == 0
@@ -197,25 +201,25 @@ def _outcomes(path: str, name: str, points: list[list[float]]) -> list[Any]:
     return _opened(path, name).outcomes(points)
 
 
+@options.with_options("sweep")
 def sweep(
-    experiment: Experiment,
+    experiment: Experiment | options.Path_,
     speed: ArrayLike | None = None,
     parameters: Mapping[str, ArrayLike] | None = None,
     *,
     folder: str | os.PathLike[str],
     client: Client | None = None,
     shards: int | None = None,
-    accuracy: float | None = None,
-    pick: options.Pick | None = None,
-    rebound: bool = False,
-    error_control: options.ErrorControl = "calibrated",
     progress: object = None,
+    **how: Unpack[SweepOptions],
 ) -> DistributedResult:
     """Computes shots over arrays of speeds and of named numbers on a cluster.
 
+    Shards, clusters and what they cost: docs/how-to/many-machines.md.
+
     Parameters
     ----------
-    experiment, speed, parameters, accuracy, pick, rebound, error_control
+    experiment, speed, parameters
         As for `hertzchain.ensemble`: speeds in m/s and numbers in SI, broadcast to one shape.
     folder : path
         Where shards go, seen by all workers under this name. The same folder
@@ -227,6 +231,7 @@ def sweep(
         thread of the workers, and no part of more than 20,000 shots.
     progress : bool, bar or function, optional
         Called with finished shards.
+    **options
 
     Returns
     -------
@@ -244,14 +249,10 @@ def sweep(
     -----
     All workers must have the build and the instruction set of the caller: otherwise
     shards fail. A shard has the bits of ``hertzchain sweep --shard i/n``.
-
-    References
-    ----------
-    Shards, clusters and what they cost: docs/how-to/many-machines.md.
     """
+    experiment = opened(experiment)
     speeds, named = broadcast(experiment, speed, parameters)
-    how = options.words("sweep", options.EnsembleOptions, {"accuracy": accuracy, "pick": pick})
-    run = _native.Run(experiment, speeds, list(named), list(named.values()), asked(how, rebound, error_control))
+    run = _native.Run(experiment, speeds, list(named), list(named.values()), options.text("sweep", how))
     path = _written(run, Path(folder))
     if shards is None:
         least = -(-speeds.size // SHOTS_A_SHARD)
@@ -263,7 +264,7 @@ def sweep(
 
 
 def campaign(
-    experiment: Experiment,
+    experiment: Experiment | options.Path_,
     out: str | os.PathLike[str],
     *,
     client: Client | None = None,
@@ -272,6 +273,8 @@ def campaign(
     progress: object = None,
 ) -> DistributedResult:
     """Runs a campaign's series on a cluster; recordings are the bytes of a run in one process.
+
+    Series and their files: docs/explanation/rig.md; shards: docs/how-to/many-machines.md.
 
     Parameters
     ----------
@@ -298,13 +301,10 @@ def campaign(
         As for `hertzchain.campaign`, where no shard can be run.
     ConnectionError
         The scheduler is gone: the same call resumes.
-
-    References
-    ----------
-    Series and their files: docs/explanation/rig.md; shards: docs/how-to/many-machines.md.
     """
     into = str(Path(out).resolve())
-    series = _native.campaign_series(experiment, seed)
+    experiment = opened(experiment)
+    series = _native.campaign_series(experiment, options.text("campaign", {}, seed=seed))
     shards = _parts(series, 1, SHARDS_A_THREAD, client) if shards is None else options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, shards, "shard") as update:
         kept, failed = _run_all(_series, lambda number: (experiment, into, number, shards, seed, _threads(client)), shards, client, update)
@@ -314,69 +314,18 @@ def campaign(
 
 
 
-@options.with_options("fit", options.FitOptions)
-def fit(
-    data: Any,
-    model: Experiment | str | None = None,
-    *,
-    free: str | Iterable[str],
-    folder: str | os.PathLike[str],
-    client: Client | None = None,
-    points: int | None = None,
-    progress: object = None,
-    **how: Unpack[options.FitOptions],
-) -> FitResult:
-    """Fits contact parameters with the model's curves computed on a cluster.
+@wraps(inference.fit)
+def fit(*data: Any, **how: Any) -> FitResult:
+    """As `hertzchain.fit`, with every curve computed (``direct``), on a cluster or in this process."""
+    return inference.fit(*data, **{**how, "direct": True})
 
-    Residuals of the descent, the profiles or the sampler's walkers are computed in
-    batches of points, each named by a hash of the problem and its points.
 
-    Parameters
-    ----------
-    data, model, free
-        As for `hertzchain.fit`, of tables: times of flight in s, numbers in SI.
-    folder : path
-        Where the problem, residuals so far and the walkers' chain are, seen by all workers under
-        this name. The same folder again goes on where a run was broken off.
-    client : dask.distributed.Client, optional
-        Everything stays in this process when absent.
-    points : int, optional
-        Most points of a batch. There are smaller ones where not every thread would have one.
-    progress : bool, bar or function, optional
-        Called with finished curves.
-    **options
-        ``direct`` is always true; ``against`` is not available.
-
-    Returns
-    -------
-    FitResult
-        With the bits of ``hertzchain.fit(..., direct=True)``.
-
-    Raises
-    ------
-    OptionError, ExperimentError
-        As for `hertzchain.fit`; batches that no worker could compute.
-    ConnectionError
-        The scheduler is gone: the same call resumes.
-
-    References
-    ----------
-    The sampler: [GoodmanWeare2010], docs/explanation/inference.md; batches: docs/how-to/many-machines.md.
-    """
-    into = Path(folder).resolve()
-    how["direct"] = True
-    names = [free] if isinstance(free, str) else free
-    words = [*options.words("fit", options.FitOptions, how), *(f"--free={name}" for name in names), *resumed(into)]
-    name, text = table(data)
-    likelihood = _native.Likelihood((name, text), modelled(model), [*words, "--", name])
-    size = POINTS if points is None else options.count("points", points, 1)
-    workers, compute = 1, None
-    if client is not None:
-        compute = _batches((_written(likelihood, into), likelihood.name), client)
-        workers = _cluster_threads(client) or UNKNOWN
-    with options.progress(progress, None, "curve") as update:
-        found = _native.fit_spread(likelihood, size, workers, compute, update)
-        return fit_result({**found, "assumed_model": assumed(model=(model, "dry"))})
+def fit_on(client: Client, likelihood: _native.Likelihood, folder: options.Path_ | None, points: int | None, update: Any) -> dict[str, Any]:
+    """A fit whose residuals workers compute, in batches named by a hash of the problem and their points."""
+    if folder is None:
+        raise OptionError("a fit on a cluster needs a folder that all workers see")
+    work = _written(likelihood, Path(folder).resolve()), likelihood.name
+    return _native.fit_spread(likelihood, points or POINTS, _cluster_threads(client) or UNKNOWN, _batches(work, client), update)
 
 
 def _outcome_of(number: int, kept: Callable[[], bool]) -> Outcome:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["ExperimentError", "ExperimentWarning", "Finding", "HertzchainError", "InternalError", "OptionError"]
+__all__ = ["ExperimentError", "ExperimentWarning", "Finding", "HertzchainError", "InternalError", "MissingFileError", "OptionError"]
 
 _KEY = re.compile(r"`([^`]+)`")
 
@@ -51,6 +53,14 @@ def findings(raw: Sequence[Mapping[str, Any]]) -> tuple[Finding, ...]:
     return tuple(Finding(key=key.group(1) if key else None, **one) for key, one in zip(keys, raw, strict=True))
 
 
+_OPTION = re.compile(r"--([a-z][a-z-]*)")
+
+
+def in_python(text: str) -> str:
+    """A message that names arguments of Python in place of options of the command line."""
+    return _OPTION.sub(lambda option: {"set": "fixed"}.get(option[1], option[1].replace("-", "_")), text)
+
+
 class HertzchainError(Exception):
     """Any failure of hertzchain: the base of `ExperimentError`, `OptionError` and `InternalError`."""
 
@@ -77,6 +87,36 @@ class ExperimentError(HertzchainError, ValueError):
 
 class OptionError(HertzchainError, ValueError):
     """A number or a name that a function does not accept; the text lists what it accepts."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(in_python(text))
+
+
+class MissingFileError(OptionError, FileNotFoundError):
+    """A file or folder that is not there.
+
+    Parameters
+    ----------
+    path : path
+        Its path.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        super().__init__(os.fspath(path))
+        self.errno, self.filename = errno.ENOENT, os.fspath(path)
+
+    def __str__(self) -> str:
+        return f"{self.filename} can't be read: there is no such file or folder"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (type(self), (self.filename,))
+
+
+def existing(path: str | os.PathLike[str]) -> str:
+    """A path of something that is there; ``-`` is standard input."""
+    if os.fspath(path) != "-" and not os.path.exists(path):
+        raise MissingFileError(path)
+    return os.fspath(path)
 
 
 class InternalError(HertzchainError, RuntimeError):

@@ -12,7 +12,7 @@ from typing import Any
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from .errors import ExperimentWarning, OptionError, findings
+from .errors import ExperimentWarning, OptionError, existing, findings
 from .results import Description, Group, LawInfo, Row
 
 __all__ = [
@@ -109,16 +109,14 @@ class Law:
 
     ``hertzchain.laws()`` lists names, equations, parameters and units.
 
+    Each law's own: `hertzchain.laws`; docs/explanation/physics.md.
+
     Parameters
     ----------
     name : str
         Of a law of the registry.
     **parameters : float or str
         Its parameters, in SI or as texts with units.
-
-    References
-    ----------
-    Each law's own: `hertzchain.laws`; docs/explanation/physics.md.
 
     Examples
     --------
@@ -270,10 +268,12 @@ def load(path: str | os.PathLike[str]) -> Experiment:
     ------
     ExperimentError
         Every mistake in the file at once, each with its line, underlined.
+    MissingFileError
+        A file that is not there.
     OptionError
         A file that can't be read.
     """
-    return Experiment.open(path)
+    return Experiment.open(existing(path))
 
 
 def preset(name: str) -> Experiment:
@@ -295,6 +295,17 @@ def preset(name: str) -> Experiment:
         A name that no preset has.
     """
     return Experiment.preset(name)
+
+
+def opened(experiment: Experiment | options.Path_) -> Experiment:
+    """An experiment; a preset by its name, a file by its path."""
+    if isinstance(experiment, Experiment):
+        return experiment
+    if isinstance(experiment, os.PathLike) or (isinstance(experiment, str) and (experiment.endswith(".toml") or os.sep in experiment)):
+        return load(experiment)
+    if isinstance(experiment, str):
+        return preset(experiment)
+    raise OptionError(f"an experiment of type {type(experiment).__name__}: expected an Experiment, the name of a preset, or a file")
 
 
 def presets() -> dict[str, str]:
@@ -363,76 +374,19 @@ def build(tables: Mapping[str, object] | str | None = None, /, name: str = "pyth
         if more:
             raise OptionError("a text is a whole experiment: keywords have no place in it")
         return Experiment.from_text(name, tables)
-    whole = {**(tables or {}), **more}
-    parts = {key: _part(value) for key, value in whole.items()}
-    return Experiment.from_text(name, _toml(parts))
+    whole = {key: _part(value) for key, value in {**(tables or {}), **more}.items()}
+    return Experiment.from_tables(name, json.dumps(options.plain(whole)))
 
 
-def _toml(tables: Mapping[str, object]) -> str:
-    """TOML of plain values, tables and lists of tables, so that mistakes in them have a line."""
-    plain = {key: value for key, value in tables.items() if not _is_table(value)}
-    lines = [f"{_key(key)} = {_inline(value)}" for key, value in plain.items()]
-    for key, value in tables.items():
-        if isinstance(value, Mapping):
-            lines += _table(_key(key), value)
-        elif _is_table(value):
-            for member in value:  # type: ignore[attr-defined]
-                lines += ["", f"[[{_key(key)}]]", *_fields(member)]
-    return "\n".join(lines).strip() + "\n"
-
-
-def _is_table(value: object) -> bool:
-    if isinstance(value, Mapping):
-        return True
-    if isinstance(value, str) or not isinstance(value, Sequence):
-        return False
-    return len(value) > 0 and all(isinstance(member, Mapping) for member in value)
-
-
-def _table(name: str, fields: Mapping[str, object]) -> list[str]:
-    nested = {key: value for key, value in fields.items() if isinstance(value, Mapping)}
-    if nested and len(nested) == len(fields):
-        tables = [_table(f"{name}.{_key(key)}", value) for key, value in nested.items()]
-        return [line for table in tables for line in table]
-    return ["", f"[{name}]", *_fields(fields)]
-
-
-def _fields(fields: Mapping[str, object]) -> list[str]:
-    return [f"{_key(key)} = {_inline(value)}" for key, value in fields.items()]
-
-
-def _key(key: str) -> str:
-    bare = key.isascii() and key.replace("-", "").replace("_", "").isalnum()
-    return key if bare else json.dumps(key)
-
-
-def _inline(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        # JSON's strings are TOML's, but for what JSON writes as two halves.
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, int):
-        return str(value)
-    if isinstance(value, Mapping):
-        members = ", ".join(f"{_key(key)} = {_inline(member)}" for key, member in value.items())
-        return f"{{ {members} }}"
-    if isinstance(value, Sequence):
-        return f"[{', '.join(_inline(member) for member in value)}]"
-    try:
-        return repr(float(value))  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        kind = type(value).__name__
-        raise OptionError(f"an experiment holds no {kind}; expected texts, numbers, lists, dicts") from None
-
-
-def check(experiment: Experiment, speed: float | str | None = None) -> Description:
+def check(experiment: Experiment | options.Path_, speed: float | str | None = None) -> Description:
     """Describes an experiment in SI with what follows from it; runs nothing.
+
+    Words and signs: docs/reference/conventions.md.
 
     Parameters
     ----------
-    experiment : Experiment
-        The chain and its striker.
+    experiment : Experiment or str or path
+        The chain and its striker; or the name of a preset, or a file.
     speed : float or str, optional
         Speed of the striker in m/s, or a text with a unit; the experiment's own when absent.
 
@@ -452,16 +406,15 @@ def check(experiment: Experiment, speed: float | str | None = None) -> Descripti
     -----
     ExperimentWarning
         Warnings about the experiment at this speed.
-
-    References
-    ----------
-    Words and signs: docs/reference/conventions.md.
     """
-    return _description(_native.check(experiment, None if speed is None else options.text(speed)))
+    return _description(_native.check(opened(experiment), options.text("check", {}, speed=speed)))
 
 
-def theory(experiment: Experiment, speed: float | str | None = None) -> Description:
+def theory(experiment: Experiment | options.Path_, speed: float | str | None = None) -> Description:
     """Theory of a chain: exact solitary wave, normal modes, band gap, restitution.
+
+    Long waves: [Nesterenko1983]; the exact solitary wave: [FrieseckeWattis1994], [EnglishPego2005];
+    restitution: [Goldobin2015]. See docs/explanation/physics.md.
 
     Parameters
     ----------
@@ -477,13 +430,8 @@ def theory(experiment: Experiment, speed: float | str | None = None) -> Descript
     ------
     ExperimentError, OptionError
         As for `check`, which has the same warnings.
-
-    References
-    ----------
-    Long waves: [Nesterenko1983]; the exact solitary wave: [FrieseckeWattis1994], [EnglishPego2005];
-    restitution: [Goldobin2015]. See docs/explanation/physics.md.
     """
-    return _description(_native.theory(experiment, None if speed is None else options.text(speed)))
+    return _description(_native.theory(opened(experiment), options.text("theory", {}, speed=speed)))
 
 
 def _description(found: Mapping[str, Any]) -> Description:
@@ -496,6 +444,8 @@ def _description(found: Mapping[str, Any]) -> Description:
 
 def laws(name: str | None = None) -> list[LawInfo]:
     """Every contact law of the registry, or the one of this name.
+
+    Each law's own, in its ``reference``; how laws are added: docs/how-to/add-a-contact-law.md.
 
     Parameters
     ----------
@@ -511,9 +461,5 @@ def laws(name: str | None = None) -> list[LawInfo]:
     ------
     OptionError
         A name that no law has.
-
-    References
-    ----------
-    Each law's own, in its ``reference``; how laws are added: docs/how-to/add-a-contact-law.md.
     """
-    return [LawInfo(**law) for law in _native.laws(name)]
+    return [LawInfo(law) for law in _native.laws(name)]

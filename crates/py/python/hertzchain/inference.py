@@ -13,12 +13,15 @@ import numpy as np
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from .errors import ExperimentWarning, OptionError
-from .experiment import preset
-from .results import DesignResult, FitResult, GaugeResult, MeasureResult, Parameter, Sweep
+from .errors import ExperimentWarning, OptionError, existing, in_python
+from .experiment import opened
+from .results import DesignResult, FitResult, GaugeResult, MeasureResult, Parameter, Sweep, csv_text
 
 if TYPE_CHECKING:
+    from dask.distributed import Client
     from typing_extensions import Unpack
+
+    from ._keywords import DesignOptions, FitOptions, GaugeOptions
 
 __all__ = ["Data", "design", "fit", "gauge"]
 
@@ -26,17 +29,22 @@ Data = "str | os.PathLike[str] | Mapping[str, Any] | MeasureResult | Sweep | pd.
 """A table of times of flight against speed: a CSV file, columns by name, or a result."""
 
 
-@options.with_options("fit", options.FitOptions)
+@options.with_options("fit")
 def fit(
     data: Any,
-    model: Experiment | str | None = None,
+    model: Experiment | options.Path_ | None = None,
     *,
     free: str | Iterable[str],
     folder: options.Path_ | None = None,
+    client: Client | None = None,
+    points: int | None = None,
     progress: object = None,
-    **how: Unpack[options.FitOptions],
+    **how: Unpack[FitOptions],
 ) -> FitResult:
     """Fits contact parameters to times of flight or to whole pulses.
+
+    Errors in speeds: [York2004]; whole pulses: [GolubPereyra1973]; descent: [More1978]; the sampler:
+    [GoodmanWeare2010], [ForemanMackey2013]. See docs/explanation/inference.md.
 
     Parameters
     ----------
@@ -45,8 +53,8 @@ def fit(
         masked, is missing.
         Or recordings of any format that `measure` reads, files or folders of them: then
         whole pulses are fitted, sample by sample.
-    model : Experiment or str, optional
-        The model, or the name of a preset. Where it is absent the paper's dry chain is assumed
+    model : Experiment or str or path, optional
+        The model, the name of a preset, or a file. Where it is absent the paper's dry chain is assumed
         (preset ``"dry"``), with a warning.
     free : str or iterable of str
         Free numbers: short names (Y, nu, eta, K, A, B, of a material or section
@@ -56,6 +64,11 @@ def fit(
         Where residuals so far and a posterior's walkers are kept. The same call with the same folder
         resumes an interrupted one, and returns the same bits; walkers stay there, to
         continue with more ``steps``.
+    client : dask.distributed.Client, optional
+        Computes the curves of a table's model on a cluster, all of them (``direct``), with the same
+        bits; ``folder`` is seen by all workers under this name. ``against`` is not available.
+    points : int, optional
+        Most points of a batch of a cluster; smaller ones where not every thread would have one.
     progress : bool, bar or function, optional
         True draws tqdm's bar; a bar's ``update``, or a function, is called with the number of curves of
         the model since the last time (of recordings: signals of single shots).
@@ -76,26 +89,30 @@ def fit(
         Names, tables and options that do not fit, and what prevents a fit.
     ExperimentError
         Mistakes in the model.
+    ConnectionError
+        The cluster's scheduler is gone: the same call resumes.
 
     Warns
     -----
     ExperimentWarning
         Speeds without errors, which are taken as exactly known; a model that is not named.
-
-    References
-    ----------
-    Errors in speeds: [York2004]; whole pulses: [GolubPereyra1973]; descent: [More1978];
-    the sampler: [GoodmanWeare2010], [ForemanMackey2013]. See docs/explanation/inference.md.
     """
-    words = [*options.words("fit", options.FitOptions, how), *_free(free), *resumed(folder)]
+    how = fit_options(how if client is None else {**how, "direct": True}, free)
+    options.count("points", points, 1)
     described = any(how.get(name) not in (None, ()) for name in ("shots", "rate", "channel"))
     files = _recordings(data, described)
     with options.progress(progress, None, "curve") as update:
-        if files is None:
-            name, text = table(data)
-            found = _native.fit((name, text), modelled(model), [*words, "--", name], update)
+        if client is not None:
+            from .distributed import fit_on
+
+            own = table(data)
+            asked = options.text("fit", how, data=[own[0]], **resumed(folder))
+            found = fit_on(client, _native.Likelihood(own, modelled(model), asked), folder, points, update)
+        elif files is None:
+            own = table(data)
+            found = _native.fit(own, modelled(model), options.text("fit", how, data=[own[0]], **resumed(folder)), update)
         else:
-            found = _native.fit_pulses(modelled(model), [*words, "--", *files], update)
+            found = _native.fit_pulses(modelled(model), options.text("fit", how, data=files, **resumed(folder)), update)
         return fit_result({**found, "assumed_model": assumed(model=(model, "dry"))})
 
 
@@ -103,7 +120,7 @@ def fit_result(found: dict[str, Any]) -> FitResult:
     """A fit from the program's JSON; warns of what was assumed."""
     for key in ("assumed", "held_loads"):
         if (text := found.get(key)) is not None:
-            warnings.warn(text, ExperimentWarning, stacklevel=3)
+            warnings.warn(in_python(text), ExperimentWarning, stacklevel=3)
     rows, samples = found.pop("rows"), found.pop("samples", None)
     texts = ("observable", "source", "channel")
     return FitResult(
@@ -116,16 +133,18 @@ def fit_result(found: dict[str, Any]) -> FitResult:
     )
 
 
-@options.with_options("design", options.DesignOptions)
+@options.with_options("design")
 def design(
     data: Any,
-    model: Experiment | str | None = None,
+    model: Experiment | options.Path_ | None = None,
     *,
     free: str | Iterable[str],
     progress: object = None,
-    **how: Unpack[options.DesignOptions],
+    **how: Unpack[DesignOptions],
 ) -> DesignResult:
     """Ranks what to measure next so that parameters tighten most.
+
+    [ChalonerVerdinelli1995], docs/explanation/inference.md.
 
     Parameters
     ----------
@@ -143,40 +162,36 @@ def design(
     ------
     OptionError, ExperimentError
         As for `fit`.
-
-    References
-    ----------
-    [ChalonerVerdinelli1995], docs/explanation/inference.md.
     """
-    name, text = table(data)
-    if "preloads" in how:
-        how["preloads"] = list(how["preloads"]) or ["none"]
-    words = [*options.words("design", options.DesignOptions, how), *_free(free), "--", name]
+    own = table(data)
     with options.progress(progress, None, "curve") as update:
-        found = _native.design((name, text), modelled(model), words, update)
+        found = _native.design(own, modelled(model), options.text("design", how, free=_named(free), data=own[0]), update)
     found["assumed_model"] = assumed(model=(model, "dry"))
-    return DesignResult(found["parameters"], found["units"], found["ranked"], found["series"], found)
+    return DesignResult(found | {"parameter_units": found["units"]})
 
 
-@options.with_options("gauge", options.GaugeOptions)
+@options.with_options("gauge")
 def gauge(
     wet: Any,
     dry: Any,
     *,
-    model: Experiment | str | None = None,
-    dry_model: Experiment | str | None = None,
+    model: Experiment | options.Path_ | None = None,
+    dry_model: Experiment | options.Path_ | None = None,
     oils: options.Path_ | None = None,
     progress: object = None,
-    **how: Unpack[options.GaugeOptions],
+    **how: Unpack[GaugeOptions],
 ) -> GaugeResult:
     """Compares known oils with a row's contacts, from times of flight, wet and dry.
+
+    Oils of the paper: [Labbe2017]; contacts as in [Goldobin2015]; the verdict:
+    docs/explanation/inference.md.
 
     Parameters
     ----------
     wet, dry : path, mapping of columns, DataFrame, MeasureResult or Sweep
         Times of flight of the wet and of the dry chain, as for `fit`.
-    model, dry_model : Experiment or str, optional
-        The chains; the wet one has a section with ``wet = true``. Where one is absent the
+    model, dry_model : Experiment or str or path, optional
+        The chains, names of presets, or files; the wet one has a section with ``wet = true``. Where one is absent the
         paper's is assumed (presets ``"pump"`` and ``"dry"``), with a warning.
     oils : path, optional
         Table (CSV) of further oils.
@@ -199,22 +214,29 @@ def gauge(
     -----
     ExperimentWarning
         Models that are not named, for which the paper's are taken.
-
-    References
-    ----------
-    Oils of the paper: [Labbe2017]; contacts as in [Goldobin2015]; the verdict: docs/explanation/inference.md.
     """
     tables = (table(wet, "wet"), table(dry, "dry"))
-    words = [*options.words("gauge", options.GaugeOptions, how), f"--dry={tables[1][0]}", "--", tables[0][0]]
+    asked = options.text("gauge", how, wet=tables[0][0], dry=tables[1][0])
     more = None if oils is None else table(oils)
     with options.progress(progress, None, "curve") as update:
-        found = _native.gauge(tables, (modelled(model or "pump"), modelled(dry_model or "dry")), more, words, update)
+        found = _native.gauge(tables, (modelled(model or "pump"), modelled(dry_model or "dry")), more, asked, update)
     found["assumed_model"] = assumed(model=(model, "pump"), dry_model=(dry_model, "dry"))
-    return GaugeResult(found["verdict"], found["oils"], found["contacts"], found["dry"], found)
+    return GaugeResult(found)
 
 
-def _free(free: str | Iterable[str]) -> list[str]:
-    return [f"--free={name}" for name in ([free] if isinstance(free, str) else free)]
+def _named(free: str | Iterable[str]) -> list[str]:
+    """Names of free numbers, at least one."""
+    names = free.split(",") if isinstance(free, str) else list(free)
+    if not names:
+        raise OptionError('nothing is free: free names numbers, such as "eta,B"')
+    return names
+
+
+def fit_options(how: Mapping[str, Any], free: str | Iterable[str]) -> dict[str, Any]:
+    """Options of a fit, with what is free; models to compare with as the command line has them."""
+    against = how.get("against") or {}
+    named = {model: [names] if isinstance(names, str) else names for model, names in against.items()}
+    return {**how, "free": _named(free), "against": [f"{model}={','.join(names)}" for model, names in named.items()]}
 
 
 def table(data: Any, name: str = "data") -> tuple[str, str]:
@@ -222,7 +244,7 @@ def table(data: Any, name: str = "data") -> tuple[str, str]:
     data = _only(data)
     if isinstance(data, (str, os.PathLike)):
         try:
-            return os.fspath(data), Path(data).read_text(encoding="utf-8")
+            return existing(data), Path(data).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise OptionError(f"{os.fspath(data)} can't be read: {error}") from None
     if isinstance(data, MeasureResult):
@@ -240,9 +262,9 @@ def _recordings(data: Any, described: bool) -> list[str] | None:
     """Paths of recordings; None if the data are a table. Where titles do not decide, options of recordings do."""
     data = _only(data)
     if isinstance(data, (str, os.PathLike)):
-        path = os.fspath(data)
+        path = existing(data)
         return None if _native.is_table(path, described) else [path]
-    return [os.fspath(path) for path in data] if isinstance(data, (list, tuple)) else None
+    return [existing(path) for path in data] if isinstance(data, (list, tuple)) else None
 
 
 def _only(data: Any) -> Any:
@@ -256,8 +278,7 @@ def csv(columns: Mapping[str, Any]) -> str:
     if {values.ndim for values in lists.values()} != {1} or len({values.size for values in lists.values()}) != 1:
         shapes = ", ".join(f"{name} {values.shape}" for name, values in lists.items())
         raise OptionError(f"columns must be of one length: {shapes or 'there are none'}")
-    rows = zip(*(map(_cell, values) for values in lists.values()), strict=True)
-    return "\n".join(",".join(row) for row in [map(str, lists), *rows]) + "\n"
+    return csv_text({name: [_cell(value) for value in values.tolist()] for name, values in lists.items()})
 
 
 def _unmasked(name: str, values: Any) -> Any:
@@ -269,16 +290,14 @@ def _unmasked(name: str, values: Any) -> Any:
         raise OptionError(f"column {name!r}: only numbers can be masked; leave its masked rows out") from None
 
 
-def _cell(value: Any) -> str:
-    if isinstance(value, str):
-        return '"' + value.replace('"', '""') + '"'
-    number = float(value)
-    return "" if np.isnan(number) else repr(number)
+def _cell(value: Any) -> Any:
+    """A text, or a number; nothing for NaN."""
+    return value if isinstance(value, str) else "" if np.isnan(number := float(value)) else number
 
 
-def modelled(model: Experiment | str | None) -> Experiment:
-    """The model, or a preset by its name."""
-    return model if isinstance(model, Experiment) else preset(model or "dry")
+def modelled(model: Experiment | options.Path_ | None) -> Experiment:
+    """The model; the paper's dry chain where none is named."""
+    return opened("dry" if model is None else model)
 
 
 def assumed(**models: tuple[object, str]) -> str | None:
@@ -291,10 +310,9 @@ def assumed(**models: tuple[object, str]) -> str | None:
     return warning
 
 
-def resumed(folder: options.Path_ | None) -> list[str]:
+def resumed(folder: options.Path_ | None) -> dict[str, Any]:
     """Options for a folder in which an interrupted fit resumes."""
     if folder is None:
-        return []
+        return {}
     into = Path(folder).resolve()
-    begun = (into / "chain.json").exists()
-    return [f"--out={into}", *(["--resume"] if begun else [])]
+    return {"out": into, "resume": (into / "chain.json").exists()}

@@ -21,22 +21,17 @@ from typing import Any, ParamSpec, TypeVar
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.colors import to_hex
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 from numpy.typing import NDArray
 
 from .errors import ExperimentWarning
-from .experiment import preset
 from .results import Case, FitResult, Floats, PowerLaw, Shot, Sweep, Trace
-from .simulation import shot as simulate
-from .simulation import sweep
 
 __all__ = [
     "STYLE",
     "corner",
-    "figure2",
-    "figure3",
-    "figure4",
     "fit",
     "ratios",
     "signals",
@@ -54,20 +49,17 @@ STYLE = str(Path(__file__).with_name("hertzchain.mplstyle"))
 MICRO = 1e6
 COLUMN = 3.35
 MARKERS = ("o", "s", "^", "D", "v")
-OILS = {"pump": "^", "gear": "s", "motor": "o"}
 
 
 def style() -> AbstractContextManager[None]:
     """The package's style within a ``with`` block.
 
+    The style sheet at `STYLE`: columns of 85 mm, as journals of physics have.
+
     Returns
     -------
     context manager
         Gives matplotlib's settings back in the end.
-
-    References
-    ----------
-    The style sheet at `STYLE`: columns of 85 mm, as journals of physics have.
     """
     # A backend that is loaded within the context loses with it what it has set: Jupyter's the
     # interactive mode, without which no later figure is shown. This loads it and draws nothing new.
@@ -107,6 +99,8 @@ def colour_of(at: int) -> str:
 def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes | None = None) -> Axes:
     """Signals of sensors against time.
 
+    As in Fig. 2 of [Labbe2017].
+
     Parameters
     ----------
     shot : Shot or Trace
@@ -127,10 +121,6 @@ def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes |
         A shot without a trace.
     KeyError
         A sensor that was not sampled.
-
-    References
-    ----------
-    The paper's Fig. 2: [Labbe2017].
     """
     trace = _trace(shot)
     shown = list(sensors or [name for name in trace.signals if trace.unit(name) in ("N", "1")])
@@ -163,6 +153,8 @@ def _label(sensor: str) -> str:
 def space_time(shot: Shot | Trace, kind: str = "contact", ax: Axes | None = None) -> Axes:
     """Space–time map: a signal of every contact or body over time.
 
+    Maps of pulses in space and time: [Nesterenko2001].
+
     Parameters
     ----------
     shot : Shot or Trace
@@ -181,10 +173,6 @@ def space_time(shot: Shot | Trace, kind: str = "contact", ax: Axes | None = None
     ------
     ValueError
         A shot without a trace, or with fewer than two such sensors.
-
-    References
-    ----------
-    Maps of pulses in space and time: [Nesterenko2001].
     """
     trace = _trace(shot)
     numbers, values = trace.stacked(kind)
@@ -243,6 +231,8 @@ def times_of_flight(
 ) -> Axes:
     """Incident and reflected times of flight against speed.
 
+    As in Fig. 3 of [Labbe2017].
+
     Parameters
     ----------
     curves : Sweep, Case, or mapping of str to these
@@ -264,10 +254,6 @@ def times_of_flight(
     ------
     KeyError
         A curve without such a column.
-
-    References
-    ----------
-    The paper's Fig. 3: [Labbe2017].
     """
     ax = on_axes(ax)
     named = curves if isinstance(curves, Mapping) else {"": curves}
@@ -299,11 +285,16 @@ def _log_axes(ax: Axes) -> None:
     """Logarithmic axes with plain numbers."""
     ax.set(xscale="log", yscale="log")
     for axis in (ax.xaxis, ax.yaxis):
-        formatter = ScalarFormatter()
-        formatter.set_scientific(False)
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 3.0, 5.0, 7.0)))
-        axis.set_major_formatter(formatter)
-        axis.set_minor_formatter(NullFormatter())
+        plain_ticks(axis, (1.0, 2.0, 3.0, 5.0, 7.0))
+
+
+def plain_ticks(axis: Axis, steps: Sequence[float]) -> None:
+    """Ticks of a logarithmic axis at these steps of each decade, as plain numbers."""
+    formatter = ScalarFormatter()
+    formatter.set_scientific(False)
+    axis.set_major_locator(LogLocator(subs=steps))
+    axis.set_major_formatter(formatter)
+    axis.set_minor_formatter(NullFormatter())
 
 
 CONTINUED = np.log(1.02)
@@ -325,6 +316,8 @@ def ratios(
     wet: Mapping[str, Curve], dry: Curve, end: str = "incident", markers: Mapping[str, str] | None = None, ax: Axes | None = None
 ) -> Axes:
     """Times of flight of wet chains over those of the dry one, against speed.
+
+    As in Fig. 4 of [Labbe2017].
 
     Parameters
     ----------
@@ -354,10 +347,6 @@ def ratios(
     -----
     ExperimentWarning
         Ratios that are not drawn.
-
-    References
-    ----------
-    The paper's Fig. 4: [Labbe2017].
     """
     ax = on_axes(ax)
     column = f"tof_{end}_s"
@@ -389,7 +378,8 @@ BAND = 1.96
 def fit(fitted: FitResult, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     """Data with the fitted curve and its 95 % band; residuals in standard errors below.
 
-    Of a fit of whole pulses, the first recording's.
+    Of a fit of whole pulses, the first recording's. Bands by the covariance:
+    docs/explanation/inference.md.
 
     Parameters
     ----------
@@ -407,10 +397,6 @@ def fit(fitted: FitResult, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     ------
     ValueError
         Axes that are not two.
-
-    References
-    ----------
-    Bands by the covariance: docs/explanation/inference.md.
     """
     if axes is None:
         sizes = {"height_ratios": (2.2, 1)}
@@ -429,9 +415,7 @@ def fit(fitted: FitResult, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
     upper.legend()
     lower.set_xlabel("Speed of the striker (m/s)")
     lower.set_xscale("log")
-    lower.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    lower.xaxis.set_major_formatter(ScalarFormatter())
-    lower.xaxis.set_minor_formatter(NullFormatter())
+    plain_ticks(lower.xaxis, (1.0, 2.0, 5.0))
     return made
 
 
@@ -469,6 +453,8 @@ def _model_pulses(upper: Axes, lower: Axes, fitted: FitResult) -> None:
 def corner(fitted: FitResult, bins: int = 40, axes: NDArray[Any] | None = None) -> NDArray[Any]:
     """The posterior of each parameter and pair, with the best fit and the covariance's ellipses.
 
+    Samples by [GoodmanWeare2010]: docs/explanation/inference.md.
+
     Parameters
     ----------
     fitted : FitResult
@@ -487,10 +473,6 @@ def corner(fitted: FitResult, bins: int = 40, axes: NDArray[Any] | None = None) 
     ------
     ValueError
         Axes of another shape.
-
-    References
-    ----------
-    Samples by [GoodmanWeare2010]: docs/explanation/inference.md.
     """
     names = list(fitted.parameters)
     count = len(names)
@@ -574,127 +556,3 @@ def _corner_labels(ax: Axes, fitted: FitResult, place: tuple[int, int], count: i
     if column < row:
         ax.locator_params(axis="y", nbins=3)
     ax.ticklabel_format(style="sci", scilimits=(-2, 3), useMathText=True)
-
-
-FIGURE_2 = {"dry": 0.1368, "pump": 1.1520, "gear": 0.1396, "motor": 0.3993}
-"""Chains and speeds in m/s of the paper's Fig. 2."""
-
-
-@styled
-def figure2(axes: Sequence[Axes] | None = None) -> NDArray[Any]:
-    """The paper's Fig. 2, as its model gives it: one channel that adds sensor bead and wall.
-
-    Dry, and with pump, gear and motor oil, at the paper's speeds.
-
-    Parameters
-    ----------
-    axes : sequence of Axes, optional
-        Four, to draw into; a new figure's when absent.
-
-    Returns
-    -------
-    ndarray of Axes, shape (4,)
-        Times in µs, forces in N.
-
-    Raises
-    ------
-    ValueError
-        Axes of another number than four.
-
-    References
-    ----------
-    Fig. 2 of [Labbe2017].
-    """
-    if axes is None:
-        axes = plt.subplots(2, 2, figsize=(2 * COLUMN, 4.2))[1].ravel()
-    made = np.asarray(axes).ravel()
-    for ax, letter, (name, speed) in zip(made, "abcd", FIGURE_2.items(), strict=True):
-        chain = preset(name)
-        channel = f"bead_plus_wall_{chain.sensor_bead}"
-        found = simulate(chain, speed, trace=[channel], interval_s=1e-6)
-        signals(found, ax=ax)
-        if (reflected := found.passage.get("reflected")) is not None:
-            # What comes later, until the striker is away for good, is no part of the figure.
-            ax.set_xlim(0.0, 1.6 * MICRO * reflected["time_s"])
-        ax.set_title(f"({letter}) {name}, {speed:.4f} m/s", loc="left")
-    return made
-
-
-def _paper_speeds(count: int) -> Floats:
-    """Speeds of the paper's range in m/s, in equal ratios."""
-    return np.geomspace(0.075, 1.23, count)
-
-
-@styled
-def figure3(speeds: Floats | None = None, ax: Axes | None = None) -> Axes:
-    """The paper's Fig. 3: dry times of flight with the full model and without the cubic term.
-
-    Incident below, reflected above; the same in logarithms as an inset.
-
-    Parameters
-    ----------
-    speeds : ndarray of shape (speeds,), optional
-        In m/s; the paper's range when absent.
-    ax : Axes, optional
-        To draw into; a new figure's when absent.
-
-    Returns
-    -------
-    Axes
-        Speeds in m/s, times in µs.
-
-    Raises
-    ------
-    OptionError
-        Speeds that no shot can have.
-
-    References
-    ----------
-    Fig. 3 of [Labbe2017].
-    """
-    speeds = _paper_speeds(40) if speeds is None else speeds
-    curves = {"full model": sweep(preset("dry"), speeds), "without cubic term": sweep(preset("hertz-viscoelastic"), speeds)}
-    ax = times_of_flight(curves, logarithmic=False, ax=on_axes(ax, 2.9))
-    ax.get_legend().remove()  # type: ignore[union-attr]
-    inset = times_of_flight(curves, ax=ax.inset_axes((0.46, 0.47, 0.53, 0.51)))
-    handles, labels = inset.get_legend_handles_labels()
-    inset.get_legend().remove()  # type: ignore[union-attr]
-    inset.set(xlabel="", ylabel="")
-    inset.tick_params(labelsize=6)
-    inset.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
-    inset.xaxis.set_major_formatter("{x:g}")
-    ax.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
-    return ax
-
-
-@styled
-def figure4(speeds: Floats | None = None, ax: Axes | None = None) -> Axes:
-    """The paper's Fig. 4: incident times of flight of wet chains over the dry ones, by the model.
-
-    Parameters
-    ----------
-    speeds, ax
-        As for `figure3`.
-
-    Returns
-    -------
-    Axes
-        Speeds in m/s, ratios without a unit.
-
-    Raises
-    ------
-    OptionError
-        Speeds that no shot can have.
-
-    References
-    ----------
-    Fig. 4 of [Labbe2017].
-    """
-    speeds = _paper_speeds(16) if speeds is None else speeds
-    wet = {name: sweep(preset(name), speeds) for name in OILS}
-    ax = ratios(wet, sweep(preset("dry"), speeds), markers=OILS, ax=ax)
-    ax.set_xscale("log")
-    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    ax.xaxis.set_major_formatter(ScalarFormatter())
-    ax.xaxis.set_minor_formatter(NullFormatter())
-    return ax

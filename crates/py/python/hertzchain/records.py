@@ -18,17 +18,20 @@ from numpy.typing import NDArray
 from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
-from .errors import ExperimentWarning, OptionError
+from .errors import ExperimentWarning, OptionError, existing, in_python
+from .experiment import opened
 from .results import CampaignResult, Case, MeasureResult, number, power_law
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from ._keywords import MeasureOptions
+
 __all__ = ["campaign", "measure"]
 
 
 def campaign(
-    experiment: Experiment,
+    experiment: Experiment | options.Path_,
     out: options.Path_,
     *,
     shard: str = "1/1",
@@ -38,12 +41,13 @@ def campaign(
 ) -> CampaignResult:
     """Runs a campaign on a virtual rig: taps and shots, recorded as by a real one.
 
-    Files are the same bytes whatever the number of threads; an interrupted run resumes.
+    Files are the same bytes whatever the number of threads; an interrupted run resumes. The rig and its
+    runs: docs/explanation/rig.md, after [Labbe2017].
 
     Parameters
     ----------
-    experiment : Experiment
-        With a ``[campaign]``, such as ``hertzchain.preset("paper")``.
+    experiment : Experiment or str or path
+        With a ``[campaign]``, such as the preset ``"paper"``.
     out : path
         Folder to write recordings into.
     shard : str
@@ -69,27 +73,26 @@ def campaign(
     -----
     ExperimentWarning
         A record that ends before the wave is back, a rate of few samples a pulse.
-
-    References
-    ----------
-    The rig and its runs: docs/explanation/rig.md, after [Labbe2017].
     """
+    how = {"out": out, "shard": shard, "seed": seed, "threads": threads}
     with options.progress(progress, None, "shot") as update:
-        done = _native.campaign(experiment, out, shard, seed, options.count("threads", threads), update)
+        done = _native.campaign(opened(experiment), options.text("campaign", {}, **how), update)
     for text in done.pop("warnings"):
         _warnings.warn(text, ExperimentWarning, stacklevel=2)
-    return CampaignResult(folder=Path(out), **done)
+    return CampaignResult(Path(out), done)
 
 
-@options.with_options("measure", options.MeasureOptions)
+@options.with_options("measure")
 def measure(
     records: options.Path_ | Iterable[options.Path_] | NDArray[Any],
     *,
     threads: int | None = None,
     progress: object = None,
-    **how: Unpack[options.MeasureOptions],
+    **how: Unpack[MeasureOptions],
 ) -> MeasureResult:
     """Measures times of flight on recordings of any rig, with errors and curves.
+
+    How pulses are timed, with which errors: docs/explanation/picking.md.
 
     Parameters
     ----------
@@ -110,22 +113,24 @@ def measure(
     Raises
     ------
     OptionError
-        Options that do not go together, a folder without recordings.
+        Options that do not go together, a folder without recordings, a file that is not there.
 
-    References
-    ----------
-    How pulses are timed, with which errors: docs/explanation/picking.md.
+    Warns
+    -----
+    ExperimentWarning
+        Records that can't be read, or have no time of flight.
     """
     if isinstance(records, np.ndarray) and records.ndim == 2 and how.get("rows") is None:
         # The shape of an array of many short shots would mislead.
         how["rows"] = "shots"
-    words = options.words("measure", options.MeasureOptions, how)
+    asked = options.text("measure", how)
     with _folder() as folder, options.progress(progress, None, "record") as update:
-        files = _files(records, folder)
-        found = _native.measure([*words, "--", *files], options.count("threads", threads), update)
-    cases = {case.name: case for case in map(_case, found.pop("cases"))}
-    own = {name: found.pop(name) for name in ("shots", "tables", "refused", "verdict")}
-    return MeasureResult(cases=cases, details=found, **own)
+        found = _native.measure(_files(records, folder), asked, options.count("threads", threads), update)
+    if found["verdict"] is not None:
+        refused = "".join(f"\n{why}" for why in found["refused"][:3])
+        _warnings.warn(in_python(found["verdict"] + refused), ExperimentWarning, stacklevel=2)
+    tables, cases = found.pop("tables"), map(_case, found.pop("cases"))
+    return MeasureResult({case.name: case for case in cases}, tables, found)
 
 
 @contextmanager
@@ -144,8 +149,8 @@ def _files(records: options.Path_ | Iterable[options.Path_] | NDArray[Any], fold
             raise OptionError(f"records of {records.dtype} and shape {records.shape}: expected volts of shape (samples,) or (shots, samples)")
         return [_saved(records, folder / "array.npy")]
     if isinstance(records, (str, os.PathLike)):
-        return [os.fspath(records)]
-    return [os.fspath(record) for record in records]
+        return [existing(records)]
+    return [existing(record) for record in records]
 
 
 PIECE = 1 << 20

@@ -63,10 +63,12 @@ class Result:
 
     _index: ClassVar[str | None] = None
     _dimension: ClassVar[str] = "row"
+    _fields: ClassVar[tuple[str, ...]] = ()
+    _printed: ClassVar[tuple[str, ...]] = ()
 
     def _columns(self) -> Mapping[str, Sequence[Any] | NDArray[Any]]:
-        """The table: columns of one length."""
-        raise NotImplementedError
+        """The table: columns of one length; by default one row of the fields."""
+        return {name: [_cell(getattr(self, name))] for name in self._fields}
 
     def _variables(self) -> Mapping[str, Variable]:
         """What xarray gets; the table over its index."""
@@ -143,11 +145,7 @@ class Result:
             whole = getattr(self, "details", None) or {name: _array(values).tolist() for name, values in self._columns().items()}
             path.write_text(json.dumps(whole, indent=2, default=str), encoding="utf-8")
         else:
-            text = io.StringIO()
-            writer = csv.writer(text, lineterminator="\n")
-            columns = self._columns()
-            writer.writerows([list(columns), *zip(*columns.values(), strict=True)])
-            path.write_text(text.getvalue(), encoding="utf-8")
+            path.write_text(csv_text(self._columns()), encoding="utf-8")
         return [path]
 
     def __getattr__(self, name: str) -> Any:
@@ -160,14 +158,20 @@ class Result:
     def __repr__(self) -> str:
         title, rows = self._summary()
         width = max((len(name) for name in rows), default=0)
-        return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items())])
+        return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items()), *self._lines()])
 
-    def _span(self, values: Floats, name: str) -> str:
-        """Least and largest number of a column with its unit."""
-        finite = values[np.isfinite(values)]
-        of = self._unit(name)
-        end = "" if of == "1" else f" {of}"
-        return f"{short(finite.min())} … {short(finite.max())}{end}" if finite.size else "–"
+    def _shown(self) -> Sequence[str]:
+        return self._printed
+
+    def _lines(self, most: int = 10) -> list[str]:
+        """The first rows of the printed columns, right-aligned under their names."""
+        columns = self._columns()
+        shown = [name for name in self._shown() if name in columns]
+        count = len(columns[shown[0]]) if shown else 0
+        cells = [[name, *(str(short(one, 7) if isinstance(one, float) else one) for one in columns[name][:most])] for name in shown]
+        widths = [max(map(len, column)) for column in cells]
+        lines = ["  " + "  ".join(f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)) for row in zip(*cells, strict=True)]
+        return lines + ([f"  … and {count - most} more"] if count > most else [])
 
 
 def _array(values: Sequence[Any] | NDArray[Any]) -> NDArray[Any]:
@@ -179,6 +183,20 @@ def _array(values: Sequence[Any] | NDArray[Any]) -> NDArray[Any]:
     made = np.empty(len(values), dtype=object)
     made[:] = list(values)
     return made
+
+
+def csv_text(columns: Mapping[str, Sequence[Any] | NDArray[Any]]) -> str:
+    """Columns as CSV with all digits."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([list(columns), *zip(*columns.values(), strict=True)])
+    return text.getvalue()
+
+
+def _cell(value: Any) -> Any:
+    """As in a table: NaN for None, a count for a list, text for a path."""
+    if isinstance(value, list):
+        return len(value)
+    return str(value) if isinstance(value, Path) else number(value)
 
 
 def number(value: float | None) -> float:
@@ -292,14 +310,16 @@ class Shot(Result):
         Velocity of the striker at first separation and at the end, in m/s.
     energy : dict or None
         The budget at the end in J.
-    velocities_m_s : ndarray, shape (bodies,)
-        Velocities of all bodies at the end, the striker's first.
     duration_s : float
         How long the shot was followed, in s.
     solver, tolerance, step_s, force_passes, steps
         How it was computed: in words, error allowed a step, its length in s, counts.
     notes : list of str
         Remarks, such as a bound that was not reached.
+    details : dict
+        All of ``shot --json``, which has the attributes so far.
+    velocities_m_s : ndarray, shape (bodies,)
+        Velocities of all bodies at the end, the striker's first.
     warnings : tuple of Finding
         Warnings about the experiment at this speed.
     trace : Trace or None
@@ -308,25 +328,8 @@ class Shot(Result):
         Whether K = m = 1 stands for SI.
     """
 
-    experiment: str
-    speed_m_s: float | None
-    tof_incident_s: float | None
-    tof_reflected_s: float | None
-    accuracy_asked: float
-    accuracy_reached: float | None
-    pulse_speed_beads_per_s: float | None
-    passage: dict[str, Any]
-    sensor_maxima: list[dict[str, float]]
-    striker_rebound: dict[str, float | None] | None
-    energy: dict[str, Any] | None
+    details: dict[str, Any]
     velocities_m_s: Floats
-    duration_s: float
-    solver: str
-    tolerance: float | None
-    step_s: float | None
-    force_passes: int
-    steps: int
-    notes: list[str]
     warnings: tuple[Finding, ...] = ()
     trace: Trace | None = None
     dimensionless: bool = False
@@ -395,7 +398,7 @@ class PowerLaw(Result):
         Standard errors by the scatter; None for two speeds.
     prefactor_accuracy_s, exponent_accuracy : float or None
         Errors that the accuracies of the times of flight allow.
-    covariance : list of list of float or None, shape (2, 2)
+    covariance : float
         Of the logarithm of the prefactor and the exponent.
     r_squared : float or None
         Coefficient of determination.
@@ -404,6 +407,8 @@ class PowerLaw(Result):
     dimensionless : bool
         Whether K = m = 1 stands for SI.
     """
+
+    _fields = ("prefactor_s", "prefactor_error_s", "prefactor_accuracy_s", "exponent", "exponent_error", "exponent_accuracy", "r_squared")
 
     prefactor_s: float
     exponent: float
@@ -419,10 +424,6 @@ class PowerLaw(Result):
     def __call__(self, speed_m_s: Any) -> Any:
         """Times of flight in s by the law, of the shape of the speeds."""
         return self.prefactor_s * np.asarray(speed_m_s, dtype=float) ** self.exponent
-
-    def _columns(self) -> dict[str, list[float]]:
-        names = ("prefactor_s", "prefactor_error_s", "prefactor_accuracy_s", "exponent", "exponent_error", "exponent_accuracy", "r_squared")
-        return {name: [number(getattr(self, name))] for name in names}
 
     def __repr__(self) -> str:
         def reported(value: float, error: float | None) -> str:
@@ -440,13 +441,20 @@ def power_law(found: Mapping[str, Any], dimensionless: bool = False) -> PowerLaw
     return PowerLaw(**known | {"residuals": found.get("residuals") or [], "dimensionless": dimensionless})
 
 
-class _Shots(Result):
-    """Columns of many shots, those of the times of flight by name."""
+class _Table(Result):
+    """A result with named columns."""
+
+    _index: ClassVar[str | None] = "speed_m_s"
+    _printed = ("speed_m_s", "tof_incident_s", "tof_reflected_s")
 
     columns: dict[str, Floats]
 
     def __getitem__(self, column: str) -> Floats:
         return self.columns[column]
+
+
+class _Shots(_Table):
+    """Columns of many shots, those of the times of flight by name."""
 
     @property
     def tof_incident_s(self) -> Floats:
@@ -498,7 +506,7 @@ class Sweep(_Shots):
         Whether K = m = 1 stands for SI.
     """
 
-    _index = "speed_m_s"
+    _printed = ("speed_m_s", "tof_incident_s", "tof_reflected_s", "accuracy_reached")
 
     experiment: str
     speed_m_s: Floats
@@ -518,10 +526,8 @@ class Sweep(_Shots):
         return {"experiment": self.experiment}
 
     def _summary(self) -> tuple[str, dict[str, str]]:
-        rows = {name: self._span(self.columns[name], name) for name in ("tof_incident_s", "tof_reflected_s", "accuracy_reached")}
-        for name, law in (("incident", self.power_law_incident), ("reflected", self.power_law_reflected)):
-            if law is not None:
-                rows[f"{name} law"] = f"{short(law.prefactor_s)} · v^{short(law.exponent)}"
+        laws = {"incident law": self.power_law_incident, "reflected law": self.power_law_reflected}
+        rows = {name: f"{short(law.prefactor_s)} · v^{short(law.exponent)}" for name, law in laws.items() if law is not None}
         if self.errors:
             rows["failed"] = f"{len(self.errors)} speeds"
         if self.warnings:
@@ -548,7 +554,7 @@ class WarningSummary(Result):
     shots: int
 
     def _columns(self) -> dict[str, list[Any]]:
-        return {"index": [self.index], "messages": ["\n".join(self.messages)], "shots": [self.shots]}
+        return {"index": [str(self.index)], "messages": ["\n".join(self.messages)], "shots": [self.shots]}
 
     def __str__(self) -> str:
         return f"first of {self.shots} at {self.index}: {'; '.join(self.messages)}"
@@ -607,10 +613,14 @@ class Ensemble(_Shots):
         return {name: np.ravel(values) for name, values in (self._inputs() | self.columns).items()}
 
     def _variables(self) -> dict[str, Variable]:
-        # Inputs that follow one axis become its coordinates.
-        axes = tuple(f"axis_{at}" for at in range(len(self.shape)))
-        inputs = {name: _along(values, axes) for name, values in self._inputs().items()}
-        return inputs | {name: (axes, values) for name, values in self.columns.items()}
+        # An axis has the name of the first input that changes along it alone.
+        varied = {name: _varied(values) for name, values in self._inputs().items()}
+        names = [next((name for name, axes in varied.items() if axes == (at,)), f"axis_{at}") for at in range(len(self.shape))]
+        inputs: dict[str, Variable] = {}
+        for name, values in self._inputs().items():
+            at = tuple(slice(None) if axis in varied[name] else 0 for axis in range(values.ndim))
+            inputs[name] = tuple(names[axis] for axis in varied[name]), np.asarray(values[at])
+        return inputs | {name: (tuple(names), values) for name, values in self.columns.items()}
 
     def _units(self) -> dict[str, str]:
         return self.parameter_units
@@ -619,27 +629,21 @@ class Ensemble(_Shots):
         return {"experiment": self.experiment}
 
     def _summary(self) -> tuple[str, dict[str, str]]:
-        columns = self._inputs() | {name: self.columns[name] for name in ("tof_incident_s", "tof_reflected_s")}
-        rows = {name: self._span(values, name) for name, values in columns.items()}
-        if self.errors:
-            rows["failed"] = str(len(self.errors))
-        if self.warnings is not None:
-            rows["warnings"] = str(self.warnings)
-        return f"Ensemble of {self.experiment}, shape {self.shape}", rows
+        rows = {"failed": str(len(self.errors))} if self.errors else {}
+        return f"Ensemble of {self.experiment}, shape {self.shape}", rows | ({"warnings": str(self.warnings)} if self.warnings else {})
+
+    def _shown(self) -> Sequence[str]:
+        return (*self._inputs(), "tof_incident_s", "tof_reflected_s")
 
 
-def _along(values: Floats, axes: tuple[str, ...]) -> Variable:
-    """The axes along which values change, and the values along them."""
-    if values.size == 0:
-        return axes, values
+def _varied(values: Floats) -> tuple[int, ...]:
+    """The axes along which values change; all of them where there are no values."""
 
     def changes(axis: int) -> bool:
         first = np.take(values, [0], axis=axis)
         return not np.array_equal(np.broadcast_to(first, values.shape), values, equal_nan=True)
 
-    varied = [axis for axis in range(values.ndim) if changes(axis)]
-    at = tuple(slice(None) if axis in varied else 0 for axis in range(values.ndim))
-    return tuple(axes[axis] for axis in varied), np.asarray(values[at])
+    return tuple(axis for axis in range(values.ndim) if values.size == 0 or changes(axis))
 
 
 @dataclass(frozen=True, repr=False)
@@ -660,24 +664,19 @@ class CampaignResult(Result):
         Series that can't be computed, each with the reason; the others are there.
     seed : int
         Of all that is random.
+    details : dict
+        All of these but the folder.
     """
 
+    _fields = ("folder", "kept", "run", "shots", "bytes", "failed", "seed")
+
     folder: Path
-    kept: int
-    run: int
-    shots: int
-    bytes: int
-    failed: list[str]
-    seed: int
+    details: dict[str, Any]
 
     @property
     def files(self) -> list[Path]:
         """The recordings, by name."""
         return sorted(self.folder.glob("*.h5"))
-
-    def _columns(self) -> dict[str, list[Any]]:
-        counts = {name: [getattr(self, name)] for name in ("kept", "run", "shots", "bytes")}
-        return {"folder": [str(self.folder)], **counts, "failed": [len(self.failed)], "seed": [self.seed]}
 
     def _units(self) -> dict[str, str]:
         return {"bytes": "B"}
@@ -688,7 +687,7 @@ class CampaignResult(Result):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Case(Result):
+class Case(_Table):
     """A measured curve: one row a speed.
 
     Attributes
@@ -702,15 +701,12 @@ class Case(Result):
         Weighted fits.
     """
 
-    _index = "speed_m_s"
+    _printed = ("speed_m_s", "shots", "tof_incident_s", "tof_incident_s_error", "tof_reflected_s", "tof_reflected_s_error")
 
     name: str
     columns: dict[str, Floats]
     power_law_incident: PowerLaw | None
     power_law_reflected: PowerLaw | None
-
-    def __getitem__(self, column: str) -> Floats:
-        return self.columns[column]
 
     def _columns(self) -> dict[str, Floats]:
         return self.columns
@@ -719,8 +715,7 @@ class Case(Result):
         return {"case": self.name}
 
     def _summary(self) -> tuple[str, dict[str, str]]:
-        rows = {name: self._span(self.columns[name], name) for name in ("speed_m_s", "tof_incident_s", "tof_reflected_s")}
-        return f"Case {self.name or '(unnamed)'}, {self.columns['speed_m_s'].size} speeds", rows
+        return f"Case {self.name or '(unnamed)'}, {self.columns['speed_m_s'].size} speeds", {}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -736,7 +731,7 @@ class MeasureResult(Result):
     tables : dict of str to str
         The program's tables as text: ``shots.csv``, ``speeds.csv`` …
     details : dict
-        Everything else of ``measure --json``: ratios of cases, notes, the amplifier's
+        All of ``measure --json``: beside these ratios of cases, notes, the amplifier's
         low-pass, what table and recordings do not find in each other (``unmatched``).
     refused : list of str
         Files that could not be read.
@@ -745,13 +740,11 @@ class MeasureResult(Result):
     """
 
     _dimension = "record"
+    _printed = ("file", "case", "speed_m_s", "tof_incident_s", "tof_reflected_s")
 
-    shots: list[dict[str, Any]]
     cases: dict[str, Case]
     tables: dict[str, str]
     details: dict[str, Any]
-    refused: list[str]
-    verdict: str | None
 
     def _columns(self) -> dict[str, NDArray[Any] | list[str]]:
         titles, *rows = csv.reader(io.StringIO(self.tables["shots.csv"]))
@@ -817,6 +810,8 @@ class Parameter(Result):
         Its prior distribution.
     """
 
+    _fields = ("name", "unit", "value", "standard_error", "start", "lower", "upper", "scale", "determined", "at_bound")
+
     name: str
     unit: str
     value: float
@@ -829,10 +824,6 @@ class Parameter(Result):
     upper: float | None
     scale: float
     prior: dict[str, float] | None
-
-    def _columns(self) -> dict[str, list[Any]]:
-        numbers = {name: [number(getattr(self, name))] for name in self._units()}
-        return {"name": [self.name], "unit": [self.unit], **numbers, "determined": [self.determined], "at_bound": [self.at_bound]}
 
     def _units(self) -> dict[str, str]:
         return dict.fromkeys(("value", "standard_error", "start", "lower", "upper", "scale"), self.unit)
@@ -870,6 +861,10 @@ class FitResult(Result):
         ``error_v``, ``fitted_v``.
     samples : ndarray of shape (samples, parameters) or None
         Of the posterior in SI, if that was sampled and has converged.
+    chi_square : dict or None
+        ``value``, degrees of ``freedom``, ``probability``; None without degrees of freedom.
+    converged : bool
+        Whether the descent came to a minimum.
     details : dict
         All of ``fit.json``: goodness of fit, identifiability, profiles,
         posterior, comparison of models.
@@ -884,16 +879,6 @@ class FitResult(Result):
 
     def __getitem__(self, name: str) -> Parameter:
         return self.parameters[name]
-
-    @property
-    def chi_square(self) -> dict[str, float] | None:
-        """Value, degrees of freedom, probability; None without degrees of freedom."""
-        return self.details["chi_square"]
-
-    @property
-    def converged(self) -> bool:
-        """Whether the descent came to a minimum."""
-        return bool(self.details["converged"])
 
     def _columns(self) -> dict[str, NDArray[Any]]:
         return self.rows
@@ -962,10 +947,6 @@ class DesignResult(Result):
 
     _index = "measure"
 
-    parameters: list[str]
-    parameter_units: list[str]
-    ranked: list[dict[str, Any]]
-    series: list[dict[str, Any]]
     details: dict[str, Any]
 
     def _columns(self) -> dict[str, list[Any]]:
@@ -1004,10 +985,6 @@ class GaugeResult(Result):
         All of ``gauge.json``.
     """
 
-    verdict: str
-    oils: list[dict[str, Any]]
-    contacts: list[dict[str, Any]]
-    dry: list[dict[str, Any]]
     details: dict[str, Any]
 
     def _columns(self) -> dict[str, list[Any]]:
@@ -1159,18 +1136,13 @@ class LawInfo(Result):
         The reference: authors, title, journal, volume, pages, year.
     parameters : list of dict
         Name, meaning, SI unit, least value, default, whether it is required.
+    details : dict
+        All of these.
     """
 
     _index = "name"
 
-    name: str
-    equation: str
-    nature: str
-    gated: bool
-    validity: str
-    reference: str
-    source: dict[str, Any] | None
-    parameters: list[dict[str, Any]]
+    details: dict[str, Any]
 
     def _columns(self) -> dict[str, list[Any]]:
         names = ("name", "meaning", "unit", "default", "least", "required")

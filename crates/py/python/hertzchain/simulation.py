@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings as _warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,10 +14,13 @@ from . import _hertzchain as _native
 from . import _options as options
 from ._hertzchain import Experiment
 from .errors import ExperimentWarning, OptionError, findings
+from .experiment import opened
 from .results import Ensemble, Floats, Shot, Sweep, Trace, WarningSummary, power_law, warn
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+    from ._keywords import ShotOptions, SweepOptions
 
 __all__ = ["ForceLaw", "ensemble", "shot", "sweep"]
 
@@ -74,23 +77,26 @@ class ForceLaw:
         return _native.Force(self.name, self.equation, self.force, self.energy, self.first, self.last, self.beside)
 
 
-@options.with_options("shot", options.ShotOptions)
+@options.with_options("shot")
 def shot(
-    experiment: Experiment,
+    experiment: Experiment | options.Path_,
     speed: float | str | None = None,
     *,
     trace: bool | Iterable[Sensor] = False,
     interval_s: float | None = None,
     forces: ForceLaw | Iterable[ForceLaw] = (),
     progress: object = None,
-    **how: Unpack[options.ShotOptions],
+    **how: Unpack[ShotOptions],
 ) -> Shot:
     """Computes one shot: times of flight, peaks, rebound, energy.
 
+    The model of the paper: [Labbe2017]; contact laws: `hertzchain.laws`; the solver:
+    [DormandPrince1980], docs/explanation/numerics.md.
+
     Parameters
     ----------
-    experiment : Experiment
-        The chain and its striker.
+    experiment : Experiment or str or path
+        The chain and its striker; or the name of a preset, or a file.
     speed : float or str, optional
         Speed of the striker in m/s, or a text such as ``"50 cm/s"``; the
         experiment's own when absent.
@@ -129,27 +135,22 @@ def shot(
     >>> import hertzchain as hc
     >>> round(1e6 * hc.shot(hc.preset("dry"), 0.5, accuracy=1e-8).tof_incident_s, 6)
     761.904024
-
-    References
-    ----------
-    The model of the paper: [Labbe2017]; contact laws: `hertzchain.laws`; the solver:
-    [DormandPrince1980], docs/explanation/numerics.md.
     """
-    words = options.words("shot", options.ShotOptions, how)
-    at = None if speed is None else options.text(speed)
+    experiment = opened(experiment)
+    asked = options.text("shot", how, speed=speed)
     laws = [law._native() for law in ([forces] if isinstance(forces, ForceLaw) else forces)]
     sensors, interval = _sensors(trace), None if interval_s is None else float(interval_s)
     with options.progress(progress, None, "step") as update:
-        found = _native.shot(experiment, at, words, None if sensors is None else (sensors, interval), laws, update)
+        found = _native.shot(experiment, asked, None if sensors is None else (sensors, interval), laws, update)
     warnings = findings(found.pop("warnings"))
     for warning in warnings:
         _warnings.warn(warning.report, ExperimentWarning, stacklevel=2)
-    raw, dimensionless = found.pop("trace"), experiment.is_dimensionless
+    raw, velocities, dimensionless = found.pop("trace"), found.pop("velocities_m_s"), experiment.is_dimensionless
     sampled = None
     if raw is not None:
         names = [f"{kind}_{number}" for kind, number in raw["sensors"]]
         sampled = Trace(raw["time_s"], dict(zip(names, raw["columns"], strict=True)), raw["energy"], dimensionless)
-    return Shot(**found, warnings=warnings, trace=sampled, dimensionless=dimensionless)
+    return Shot(found, velocities, warnings, sampled, dimensionless)
 
 
 def _sensors(trace: bool | Iterable[Sensor]) -> list[tuple[str, int]] | None:
@@ -173,38 +174,24 @@ def _sensor(sensor: Sensor) -> tuple[str, int]:
     return kind, whole
 
 
-def asked(how: list[str], rebound: bool, error_control: str, threads: int | None = None) -> dict[str, Any]:
-    """Settings of a batch as the extension takes them."""
-    return {"options": how, "rebound": bool(rebound), "error_control": error_control, "threads": options.count("threads", threads)}
-
-
-@options.with_options("sweep", options.ShotOptions)
+@options.with_options("sweep")
 def sweep(
-    experiment: Experiment,
+    experiment: Experiment | options.Path_,
     speeds: ArrayLike | str = "log:0.075:1.23:25",
     *,
-    rebound: bool = False,
-    error_control: options.ErrorControl = "calibrated",
-    threads: int | None = None,
     progress: object = None,
-    **how: Unpack[options.ShotOptions],
+    **how: Unpack[SweepOptions],
 ) -> Sweep:
     """Computes times of flight against speed, with power-law fits.
 
+    Curves of times of flight: [Labbe2017]; error control: docs/explanation/numerics.md.
+
     Parameters
     ----------
-    experiment : Experiment
-        A chain with a striker.
+    experiment : Experiment or str or path
+        A chain with a striker; or the name of a preset, or a file.
     speeds : array_like of shape (speeds,), or str
         Speeds in m/s, at most 100,000; or ``"0.1,0.2"``, ``"FROM:TO:COUNT"``, ``"log:FROM:TO:COUNT"``.
-    rebound : bool
-        Follow the striker until it is away for good; takes the slower loop.
-    error_control : {"calibrated", "per-shot"}
-        How errors of times of flight are bounded: by calibration shots for all, from which each
-        estimates its own; or by two more shots each, with longer steps, as always below 160
-        shots and on rows that are not uniform.
-    threads : int, optional
-        All cores when absent; results do not depend on it.
     progress : bool, bar or function, optional
         True draws tqdm's bar; a bar's ``update``, or a function, is called with the
         number of shots since the last time.
@@ -226,20 +213,16 @@ def sweep(
     ExperimentWarning
         Once a call: the warnings of the first speed that has any, and how many others have; all of
         them are in ``Sweep.warnings``.
-
-    References
-    ----------
-    Curves of times of flight: [Labbe2017]; error control: docs/explanation/numerics.md.
     """
+    experiment = opened(experiment)
     values = _native.speeds(speeds) if isinstance(speeds, str) else _numbers("speeds", speeds)
     if values.size > MOST_SPEEDS:
         raise OptionError(f"{values.size} speeds: expected at most {MOST_SPEEDS}; `ensemble` takes more")
     if values.ndim > 1:
         raise OptionError(f"speeds of shape {values.shape}: expected one dimension; `ensemble` takes more")
     values = np.ascontiguousarray(np.atleast_1d(values))
-    settings = asked(options.words("sweep", options.ShotOptions, how), rebound, error_control, threads)
     with options.progress(progress, values.size, "shot") as update:
-        found = _native.Run(experiment, values, [], [], settings).compute(True, update)
+        found = _native.Run(experiment, values, [], [], options.text("sweep", how)).compute(True, update)
     errors, warnings = dict(found["errors"]), dict(found["warnings"])
     _check_any(errors, values.size)
     warn(next(iter(warnings.values()), []), len(warnings))
@@ -250,37 +233,32 @@ def sweep(
     )  # fmt: skip
 
 
-@options.with_options("ensemble", options.EnsembleOptions)
+@options.with_options("sweep")
 def ensemble(
-    experiment: Experiment,
+    experiment: Experiment | options.Path_,
     speed: ArrayLike | None = None,
     parameters: Mapping[str, ArrayLike] | None = None,
     *,
-    rebound: bool = False,
-    error_control: options.ErrorControl | Literal["none"] = "calibrated",
-    threads: int | None = None,
     progress: object = None,
-    **how: Unpack[options.EnsembleOptions],
+    **how: Unpack[SweepOptions],
 ) -> Ensemble:
     """Computes shots over arrays of speeds and of named numbers, at the engine's full speed.
 
-    Arrays are broadcast against each other as NumPy does.
+    Arrays are broadcast against each other as NumPy does. Batches of shots in equal steps:
+    docs/explanation/numerics.md.
 
     Parameters
     ----------
-    experiment : Experiment
-        A chain with a striker.
+    experiment : Experiment or str or path
+        A chain with a striker; or the name of a preset, or a file.
     speed : array_like, optional
         Speeds of the striker in m/s; the experiment's own when absent.
     parameters : mapping of str to array_like, optional
         Numbers of the experiment in SI by their paths, or by unmistakable ends
         of them: ``{"young_modulus": [200e9, 213e9]}``. Neighbours along the last
         axis that share their numbers are set up once.
-    rebound, threads, progress
+    progress
         As for `sweep`.
-    error_control : {"per-shot", "calibrated", "none"}
-        As for `sweep`; ``"none"`` computes every shot once, to the same accuracy,
-        without a bound on its error.
     **options
 
     Returns
@@ -306,15 +284,11 @@ def ensemble(
     >>> found = hc.ensemble(hc.preset("dry"), np.array([[0.1], [0.5]]), {"damping_cubic.coefficient": [0.0, 77.0]})
     >>> found.tof_incident_s.shape
     (2, 2)
-
-    References
-    ----------
-    Batches of shots in equal steps: docs/explanation/numerics.md.
     """
+    experiment = opened(experiment)
     speeds, values = broadcast(experiment, speed, parameters)
-    settings = asked(options.words("ensemble", options.EnsembleOptions, how), rebound, error_control, threads)
     with options.progress(progress, speeds.size, "shot") as update:
-        found = _native.Run(experiment, speeds, list(values), list(values.values()), settings).compute(False, update)
+        found = _native.Run(experiment, speeds, list(values), list(values.values()), options.text("ensemble", how)).compute(False, update)
     _check_any(dict(found["errors"]), speeds.size)
     return gathered(experiment, speeds.shape, list(values), found)
 
@@ -376,5 +350,10 @@ def _numbers(name: str, values: object) -> Floats:
 
 
 def _check_any(errors: Mapping[int, str], count: int) -> None:
-    if count and len(errors) == count:
-        raise OptionError(f"no shot could be computed; the first: {errors[0]}")
+    """Raises where no shot was computed, and warns where some were not, as at a speed of NaN."""
+    if not errors:
+        return
+    first = next(iter(errors.values()))
+    if len(errors) == count:
+        raise OptionError(f"no shot could be computed; the first: {first}")
+    _warnings.warn(f"{len(errors)} of {count} shots could not be computed; the first: {first}", ExperimentWarning, stacklevel=3)

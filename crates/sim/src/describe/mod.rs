@@ -12,10 +12,12 @@ mod theory;
 use crate::error::StudyError;
 use hertzchain_chain::{Chain, System};
 use hertzchain_experiment::{Experiment, Units};
+use serde::{Serialize, Serializer};
 use theory::Waves;
 
 /// A value of one row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Value {
     /// A number in the row's unit.
     Number(f64),
@@ -26,13 +28,30 @@ pub enum Value {
     /// Words.
     Text(String),
     /// What describes one thing: its numbers, and words that need no name.
+    #[serde(serialize_with = "by_key")]
     Parts(Vec<Row>),
 }
 
+/// Parts by their names, each with its unit.
+fn by_key<S: Serializer>(parts: &[Row], serializer: S) -> Result<S::Ok, S::Error> {
+    let key = |part: &Row| {
+        let words = [part.name.as_str(), part.unit.as_str()];
+        let words = words.into_iter().filter(|word| !word.is_empty());
+        let words = words.map(|word| word.replace([' ', '/'], "_").to_lowercase());
+        words.collect::<Vec<_>>().join("_")
+    };
+    serializer.collect_map(parts.iter().map(|part| (key(part), &part.value)))
+}
+
+fn trimmed<S: Serializer>(name: &str, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(name.trim())
+}
+
 /// One line: a name, its value and unit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// What it is.
+    #[serde(serialize_with = "trimmed")]
     pub name: String,
     /// Its value.
     pub value: Value,
@@ -41,7 +60,7 @@ pub struct Row {
 }
 
 /// Lines that belong together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Group {
     /// What they are about.
     pub title: String,

@@ -44,7 +44,7 @@ fn dissipated_j(budget: &Budget) -> f64 {
 }
 
 /// Where the energy is, against time, and what is missing.
-pub(crate) fn energy(budgets: &[Budget], units: Units) -> Figure {
+pub(crate) fn energy(budgets: &[Budget], units: Units, title: &str) -> Figure {
     let times_s: Vec<f64> = budgets.iter().map(|budget| budget.time_s).collect();
     let clock = Clock::of(&times_s, units);
     let times = clock.scaled(&times_s);
@@ -66,7 +66,7 @@ pub(crate) fn energy(budgets: &[Budget], units: Units) -> Figure {
         .share_x()
         .panel(chart)
         .panel(Chart::new(&clock.label("Time"), "Residual / input").with(residual))
-        .title("Energy budget over time")
+        .title(title)
 }
 
 fn peak(values: &[f64]) -> f64 {

@@ -1,12 +1,12 @@
 //! `hertzchain campaign`: what a rig does alone, on a virtual rig.
 
+use crate::campaign::PreparedCampaign;
 use crate::input;
 use crate::options::CampaignOptions as Arguments;
 use crate::program::failure::Failure;
 use crate::program::print::{self, print};
-use hertzchain_sim::rig::{Done, Plan, Progress, RigError, campaign, forecast};
+use hertzchain_sim::rig::{Done, Plan, Progress};
 use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
-use rayon::ThreadPoolBuilder;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -17,20 +17,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::User(text.to_owned()));
     }
     let experiment = input::open(&arguments.input)?;
-    let plan = Plan::new(&experiment, arguments.seed).map_err(failure)?;
-    for warning in forecast(&plan).map_err(failure)? {
+    let prepared = PreparedCampaign::new(&experiment, arguments)?;
+    for warning in &prepared.warnings {
         print::note(&format!("warning: {warning}"));
     }
-    let threads = arguments.threads.map_or(0, |threads| threads.0);
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
     let shown = Shown::new();
     let begun = Instant::now();
-    let watch = |progress| shown.show(progress);
-    let done = pool.install(|| campaign(&plan, &arguments.out, arguments.shard, &watch));
+    let done = prepared.run(&|progress| shown.show(progress));
     shown.bar.finish_and_clear();
-    let done = done.map_err(failure)?;
-    print(&summary(&plan, &done, begun.elapsed(), arguments))?;
+    let done = done?;
+    print(&summary(&prepared.plan, &done, begun.elapsed(), arguments))?;
     evaluate(&done)
 }
 
@@ -73,15 +69,6 @@ fn untriggered(done: &Done) -> Option<String> {
             names.join(", ")
         )
     })
-}
-
-/// The user's mistakes are reported as such; a full disk is not theirs.
-pub(crate) fn failure(error: RigError) -> Failure {
-    match error {
-        RigError::Mistakes(mistakes) => (*mistakes).into(),
-        RigError::Record(error) => Failure::Ours(error.to_string()),
-        other => Failure::User(other.to_string()),
-    }
 }
 
 /// Progress: a bar in a terminal, a line for every tenth elsewhere.

@@ -3,8 +3,7 @@
 use crate::options::CheckOptions as Check;
 use crate::program::failure::{self, Failure};
 use crate::program::{format, print};
-use crate::{input, json};
-use hertzchain_sim::describe;
+use crate::{describe, input};
 use serde_json::json;
 
 /// Runs the verb.
@@ -13,18 +12,11 @@ pub(crate) fn run(arguments: &Check) -> Result<(), Failure> {
         return Err(Failure::User("check needs an experiment: FILE or --preset NAME".into()));
     }
     let experiment = input::open(&arguments.input)?;
-    let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
-    // What the physics refuses is reported at its place in the file.
-    let given = arguments.speed.as_ref();
-    input::at_speed(given, experiment.system(speed))?;
-    let (chain, warnings) = input::at_speed(given, experiment.chain(speed))?;
-    let groups = describe(&experiment, &chain)?;
+    let found = describe::check(&experiment, arguments)?;
     if arguments.json {
-        let warnings: Vec<String> = warnings.iter().map(|w| w.one_line()).collect();
-        return print::print_json(
-            &json!({ "groups": json::groups(&groups), "warnings": warnings }),
-        );
+        let warnings: Vec<String> = found.warnings.iter().map(|w| w.one_line()).collect();
+        return print::print_json(&json!({ "groups": found.groups, "warnings": warnings }));
     }
-    failure::print_speed_warnings(given, &warnings);
-    print::print(&format::groups(&groups, experiment.units()))
+    failure::print_speed_warnings(arguments.speed.as_ref(), &found.warnings);
+    print::print(&format::groups(&found.groups, experiment.units()))
 }

@@ -5,6 +5,7 @@ use crate::options::DesignOptions as Arguments;
 use crate::program::failure::{Failure, print_assumed, print_stored};
 use crate::program::folder::Folder;
 use crate::program::format::{self, digits};
+use crate::program::notes::with_notes;
 use crate::program::print::{self, heading};
 use crate::program::words::{lines, misfit};
 use crate::{design, inference};
@@ -26,8 +27,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let problem = inference::problem(model, data, &arguments.freed)?;
     let targets = design::targets(&problem, arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let pool = inference::pool(arguments.modelled.threads)?;
-    let run_design = pool.install(|| design::run_design(&problem, &targets, &speeds, arguments))?;
+    let threads = arguments.modelled.threads.map(|threads| threads.0);
+    let run_design =
+        with_notes(threads, || design::run_design(&problem, &targets, &speeds, arguments))??;
     let mut all = design::json(&problem, &run_design);
     all["options"] = crate::options::recorded(arguments);
     let assumed = inference::assumed_model(&arguments.modelled);

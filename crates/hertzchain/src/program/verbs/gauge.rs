@@ -4,13 +4,12 @@ mod pictures;
 mod report;
 
 use crate::gauge::{self, GaugeResult};
-use crate::inference;
 use crate::options::GaugeOptions as Arguments;
 use crate::program::failure::{Failure, print_assumed};
 use crate::program::folder::Folder;
+use crate::program::notes::with_notes;
 use crate::program::print;
 use crate::program::words::lines;
-use hertzchain_infer::gauge::Chains;
 use std::path::Path;
 
 /// Runs the verb.
@@ -29,15 +28,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.dry_model.is_some() || arguments.dry_preset.is_some(),
     );
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let pool = inference::pool(arguments.threads)?;
-    let chains = Chains {
-        dry: &dry_model,
-        wet: &wet_model,
-        free: &arguments.dry_free,
-        own: &arguments.own,
-        accuracy: arguments.accuracy.0,
-    };
-    let run_gauge = pool.install(|| gauge::run_gauge(&chains, (dry, wet), oils, arguments.form))?;
+    let threads = arguments.threads.map(|threads| threads.0);
+    let chains = [&wet_model, &dry_model];
+    let run_gauge = with_notes(threads, || gauge::gauge([wet, dry], chains, oils, arguments))??;
     let mut all = gauge::json(&run_gauge);
     all["options"] = crate::options::recorded(arguments);
     all["assumed_model"] = assumed.clone().into();

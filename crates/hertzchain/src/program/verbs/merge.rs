@@ -1,6 +1,5 @@
 //! `hertzchain merge`: shards of several machines put together.
 
-use super::campaign::failure;
 use super::sweep::{reported, shard};
 use crate::program::arguments::Merge as Arguments;
 use crate::program::failure::Failure;
@@ -21,8 +20,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn campaign(told_by: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure> {
-    let plan = plan_of_folder(told_by).map_err(failure)?;
-    let merged = hertzchain_sim::rig::merge(&plan, folders, out).map_err(failure)?;
+    let plan = plan_of_folder(told_by)?;
+    let merged = hertzchain_sim::rig::merge(&plan, folders, out)?;
     print(&format!(
         "{} series of {}, {} of them copied now; {} of recordings in {}; seed {}.\n",
         merged.series,

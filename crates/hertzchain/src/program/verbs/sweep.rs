@@ -4,93 +4,35 @@ mod fits;
 pub(crate) mod reported;
 pub(crate) mod shard;
 
-use crate::json::SweepView;
-use crate::options::check_speeds;
-use crate::options::{self, SimulationOptions as Asked, SweepOptions as Arguments};
+use crate::options::SweepOptions as Arguments;
 use crate::program::failure::{self, Failure};
 use crate::program::folder::Folder;
 use crate::program::format::Style;
 use crate::program::print;
+use crate::sweep::{self, SweepResult};
 use crate::{input, missing, table};
 use hertzchain_experiment::{Experiment, Units};
-use hertzchain_sim::{
-    Batch, BatchOptions, BatchResult, BatchShot, Calibration, ErrorControl, Plan, Shard,
-    StudyError, parse_speeds,
-};
+use hertzchain_sim::StudyError;
 use indicatif::{ProgressBar, ProgressStyle};
-use rayon::ThreadPoolBuilder;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let speeds = parse_speeds(&arguments.speeds).map_err(|e| Failure::User(e.to_string()))?;
     let experiment = input::open(&arguments.input)?;
-    check_speeds("--speeds", &arguments.speeds, experiment.units())?;
-    let plan = adjusted(&experiment, &arguments.how)?;
+    let speeds = sweep::speeds(&experiment, arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let threads = arguments.threads.map_or(0, |threads| threads.0);
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
     let bar = bar(speeds.len() as u64);
-    let batch = Batch::new(&experiment, speeds, options(arguments, &plan)?)?;
+    let batch = sweep::batch(&experiment, speeds, arguments)?;
     if let Some(shard) = arguments.shard {
+        let pool = sweep::pool(arguments)?;
         let done = pool.install(|| shard::run(arguments, &batch, shard, &|| bar.inc(1)));
         bar.finish_and_clear();
         return done;
     }
-    let swept = pool.install(|| Swept::of(&batch, &|| bar.inc(1)));
+    let swept = sweep::computed(&experiment, arguments, &batch, &|| bar.inc(1))?;
     bar.finish_and_clear();
-    show(arguments, &experiment, &plan, &swept)?;
+    show(arguments, &experiment, &swept)?;
     folder.map_or(Ok(()), |folder| reported::write(folder, &swept.result))?;
     report_failed(&swept, experiment.units())
-}
-
-/// A batch with all of its shots.
-struct Swept {
-    points: Vec<BatchShot>,
-    result: BatchResult,
-    calibration: Option<Calibration>,
-}
-
-impl Swept {
-    fn of(batch: &Batch, progress: &(dyn Fn() + Sync)) -> Self {
-        let mut points = Vec::new();
-        // Of a hundred thousand shots of a thousand beads these alone would take 0.8 GB.
-        let take = |mut point: BatchShot| {
-            if let Ok(shot) = &mut point.shot {
-                shot.velocity_m_s = Vec::new();
-            }
-            points.push(point);
-        };
-        let (result, calibration) = batch.run_each(Shard::WHOLE, progress, take);
-        Self { points, result, calibration }
-    }
-}
-
-/// How shots are computed, as data.
-fn options(arguments: &Arguments, plan: &Plan) -> Result<BatchOptions, Failure> {
-    Ok(BatchOptions {
-        accuracy: plan.accuracy,
-        solver: plan.solver,
-        duration_s: plan.duration_s,
-        pick: plan.pick,
-        rebound: arguments.rebound,
-        checked: arguments.how.check,
-        error_control: match arguments.error_control {
-            options::ErrorControl::PerShot => ErrorControl::PerShot,
-            options::ErrorControl::Calibrated => ErrorControl::Calibrated,
-        },
-        set: input::instruction_set()?,
-    })
-}
-
-/// A plan at the experiment's own speed, to refuse options before any work.
-fn adjusted(experiment: &Experiment, how: &Asked) -> Result<Plan, Failure> {
-    experiment.needs_striker("a sweep over speeds needs a chain with a striker")?;
-    input::check_times(how, experiment)?;
-    let (mut plan, _warnings) = Plan::from_experiment(experiment, None)?;
-    input::adjust(how, &mut plan);
-    input::check_effort(how, &plan, experiment.units())?;
-    Ok(plan)
 }
 
 /// Drawn on a terminal only.
@@ -102,7 +44,7 @@ fn bar(shots: u64) -> ProgressBar {
 }
 
 /// Every speed failed: the sweep did.
-fn report_failed(swept: &Swept, units: Units) -> Result<(), Failure> {
+fn report_failed(swept: &SweepResult, units: Units) -> Result<(), Failure> {
     let style = Style { digits: 16, units };
     let failed = swept.points.iter().filter_map(|point| Some((point, point.shot.as_ref().err()?)));
     let of_speed = |error: &StudyError| match error {
@@ -127,42 +69,35 @@ fn report_failed(swept: &Swept, units: Units) -> Result<(), Failure> {
 fn show(
     arguments: &Arguments,
     experiment: &Experiment,
-    plan: &Plan,
-    swept: &Swept,
+    swept: &SweepResult,
 ) -> Result<(), Failure> {
     if arguments.json {
-        let made = (&swept.result, swept.calibration.as_ref());
-        let mut view = SweepView::new(experiment, plan, &swept.points, made);
-        if let Some(assumed) = input::assumed(&arguments.input) {
-            view.outline["assumed_model"] = assumed.into();
-        }
         return match experiment.units() {
-            Units::Si => print::stream_json(&view),
+            Units::Si => print::stream_json(swept),
             units => {
-                let whole = serde_json::to_value(&view);
+                let whole = serde_json::to_value(swept);
                 let whole = whole.map_err(|error| Failure::Ours(format!("JSON: {error}")))?;
                 print::print_json(&table::named(whole, units))
             }
         };
     }
-    if let Some(assumed) = input::assumed(&arguments.input) {
-        print::print(&assumed)?;
+    if let Some(assumed) = &swept.summary.assumed_model {
+        print::print(assumed)?;
     }
     print_warnings(experiment, swept);
     let part = &swept.result;
     if part.rows.flights().is_empty() && !reported::nothing(part) {
-        let why = no_flight(swept, plan, experiment.units());
-        return print::print(&(reported::rows(part) + &why));
+        return print::print(&(reported::rows(part) + &no_flight(swept)));
     }
     reported::show(part)
 }
 
 /// Why no speed has a time of flight.
-fn no_flight(swept: &Swept, plan: &Plan, units: Units) -> String {
+fn no_flight(swept: &SweepResult) -> String {
     let first = swept.points.iter().find_map(|point| point.shot.as_ref().ok());
     match first.map(|shot| &shot.passage) {
         Some(Err(reason)) => {
-            let reason = missing::reason(&plan.chain.far, units, reason);
+            let reason = missing::reason(&swept.plan.chain.far, swept.result.units, reason);
             format!("No times of flight: {reason}.\n")
         }
         _ => "No times of flight: what they are picked by was not seen.\n".to_owned(),
@@ -170,7 +105,7 @@ fn no_flight(swept: &Swept, plan: &Plan, units: Units) -> String {
 }
 
 /// The first warnings stand for those of their kind at other speeds.
-fn print_warnings(experiment: &Experiment, swept: &Swept) {
+fn print_warnings(experiment: &Experiment, swept: &SweepResult) {
     let mut warned = (swept.points.iter()).filter(|point| !point.warnings.is_empty());
     let Some(first) = warned.next() else {
         return;

@@ -4,30 +4,25 @@ use crate::options::CheckOptions as Check;
 use crate::program::failure::{self, Failure};
 use crate::program::words::lines;
 use crate::program::{format, print};
-use crate::{input, json};
-use hertzchain_sim::describe_theory;
+use crate::{describe, input};
+use serde_json::json;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Check) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
-    let speed = input::speed(arguments.speed.as_ref(), &experiment)?;
-    // What the physics refuses is reported at its place in the file.
-    let given = arguments.speed.as_ref();
-    input::at_speed(given, experiment.system(speed))?;
-    let (chain, warnings) = input::at_speed(given, experiment.chain(speed))?;
-    let groups = describe_theory(&experiment, &chain)?;
+    let found = describe::theory(&experiment, arguments)?;
+    let assumed = input::assumed(&arguments.input);
     if arguments.json {
         // A list of groups has no place for it.
-        if let Some(assumed) = input::assumed(&arguments.input) {
+        if let Some(assumed) = assumed {
             print::note(&format!("warning: {assumed}"));
         }
-        return print::print_json(&json::groups(&groups));
+        return print::print_json(&json!(found.groups));
     }
-    failure::print_speed_warnings(given, &warnings);
-    let assumed = lines(input::assumed(&arguments.input).into_iter().collect());
-    let text = match groups.is_empty() {
+    failure::print_speed_warnings(arguments.speed.as_ref(), &found.warnings);
+    let text = match found.groups.is_empty() {
         true => "No closed theory fits this chain: no striker, no preload.".to_owned(),
-        false => format::groups(&groups, experiment.units()),
+        false => format::groups(&found.groups, experiment.units()),
     };
-    print::print(&(assumed + &text))
+    print::print(&(lines(assumed.into_iter().collect()) + &text))
 }

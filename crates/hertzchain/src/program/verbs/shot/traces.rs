@@ -1,10 +1,12 @@
 //! Traces, figures and the moving picture of a shot.
 
-use crate::options::ShotOptions as Arguments;
+use crate::options::{ShotOptions as Arguments, recorded};
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
+use crate::program::format::Style;
 use crate::program::pictures;
 use crate::program::print;
+use crate::shot::ShotResult;
 use crate::table::{cell, suffix};
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
@@ -12,6 +14,13 @@ use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::Animation;
 use hertzchain_sim::{Plan, Shot, shoot};
 use npyz::WriterBuilder;
+use serde_json::Value;
+
+/// The file with everything about the shot.
+pub(super) const SHOT: &str = "shot.json";
+
+/// The moving picture.
+pub(super) const ANIMATION: &str = "animation.html";
 
 /// Samples of a shot, unless the chain is so long that memory decides.
 const SAMPLES: usize = 3000;
@@ -59,9 +68,9 @@ pub(super) fn write(
     mut folder: Folder,
     arguments: &Arguments,
     experiment: &Experiment,
-    plan: &Plan,
-    shot: &Shot,
+    shot: &ShotResult,
 ) -> Result<(), Failure> {
+    let plan = &shot.plan;
     let bodies = Bodies::of(&plan.chain);
     let shown = experiment.sensors();
     let mut sensors = shown.clone();
@@ -73,14 +82,17 @@ pub(super) fn write(
     let mut trace = sampled(plan, shot, sensors)?;
     // Budgets stand at the ends of steps; the last step may reach beyond the shot.
     trace.budgets.extend(shot.budget.clone());
+    let title = title(experiment, shot);
     if arguments.out.is_some() {
+        folder.write(SHOT, format!("{:#}\n", provenance(arguments, shot)?).as_bytes())?;
+        folder.write("experiment.toml", experiment.text().as_bytes())?;
         let noise = shot.tolerance.unwrap_or(shot.accuracy_asked);
         let table = csv(&trace, &shown, experiment, noise);
         folder.write("traces.csv", table.as_bytes())?;
         let energy = energy_csv(&trace, experiment.units());
         folder.write("energy.csv", energy.as_bytes())?;
-        folder.figure("signals", &pictures::signals(experiment, &trace, &shown))?;
-        folder.figure("energy", &pictures::energy(&trace.budgets, experiment.units()))?;
+        folder.figure("signals", &pictures::signals(experiment, &trace, (&shown, &title)))?;
+        folder.figure("energy", &pictures::energy(&trace.budgets, experiment.units(), &title))?;
     }
     let columns = &trace.columns[shown.len()..];
     if arguments.npy {
@@ -88,10 +100,24 @@ pub(super) fn write(
     }
     if arguments.animate {
         let page = animation(experiment, plan, &trace, columns, &bodies).html();
-        folder.write("animation.html", page.as_bytes())?;
+        folder.write(ANIMATION, page.as_bytes())?;
     }
     print::written(&folder.finish()?);
     Ok(())
+}
+
+/// The experiment's title and the speed of the striker.
+fn title(experiment: &Experiment, shot: &ShotResult) -> String {
+    let speed = |speed| format!(", {}", Style::brief(shot.units).quantity(speed, "m/s"));
+    format!("{}{}", experiment.title(), shot.speed_m_s.map_or(String::new(), speed))
+}
+
+/// The result, and what it follows from beside the experiment's text.
+fn provenance(arguments: &Arguments, shot: &ShotResult) -> Result<Value, Failure> {
+    let mut all = super::json(shot)?;
+    all["version"] = env!("CARGO_PKG_VERSION").into();
+    all["options"] = recorded(arguments);
+    Ok(all)
 }
 
 fn sampled(plan: &Plan, shot: &Shot, sensors: Vec<Sensor>) -> Result<Trace, Failure> {

@@ -1,0 +1,283 @@
+//! Many shots of an experiment: batches over speeds and named numbers, and their results.
+
+use crate::failure::Failure;
+use crate::options::{SweepOptions, check_speeds};
+use crate::shot::ShotView;
+use crate::{input, missing, options};
+use hertzchain_experiment::{Experiment, Units};
+use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
+use hertzchain_sim::{
+    Batch, BatchOptions, BatchResult, BatchShot, Calibration, Column, ErrorControl, Plan, Shard,
+    parse_speeds,
+};
+use rayon::ThreadPoolBuilder;
+use serde::{Serialize, Serializer};
+
+/// A batch of shots of an experiment, computed as the options ask.
+///
+/// ```
+/// use hertzchain::prelude::*;
+///
+/// let row = preset("dry")?;
+/// // Two speeds, with another coefficient of the cubic damping each.
+/// let batch = hertzchain::sweep::batch(&row, vec![0.2, 0.4], &SweepOptions::default())?
+///     .with_number("damping_cubic.coefficient", vec![0.0, 77.0])?;
+/// let result = batch.run(Shard::WHOLE, &|| {});
+/// assert_eq!(result.rows.len(), 2);
+/// # Ok::<(), hertzchain::Failure>(())
+/// ```
+///
+/// # Errors
+/// An experiment without a striker, and options that it does not take.
+pub fn batch(
+    experiment: &Experiment,
+    speeds_m_s: Vec<f64>,
+    options: &SweepOptions,
+) -> Result<Batch, Failure> {
+    let plan = plan(experiment, options)?;
+    let options = BatchOptions {
+        accuracy: plan.accuracy,
+        solver: plan.solver,
+        duration_s: plan.duration_s,
+        pick: plan.pick,
+        rebound: options.rebound,
+        checked: options.how.check,
+        error_control: match options.error_control {
+            options::ErrorControl::PerShot => ErrorControl::PerShot,
+            options::ErrorControl::Calibrated => ErrorControl::Calibrated,
+            options::ErrorControl::None => ErrorControl::None,
+        },
+        set: input::instruction_set()?,
+    };
+    Ok(Batch::new(experiment, speeds_m_s, options)?)
+}
+
+/// A plan at the experiment's own speed, to reject options before any work.
+fn plan(experiment: &Experiment, options: &SweepOptions) -> Result<Plan, Failure> {
+    let how = &options.how;
+    experiment.needs_striker("a sweep over speeds needs a chain with a striker")?;
+    input::check_times(how, experiment)?;
+    let (mut plan, _warnings) = Plan::from_experiment(experiment, None)?;
+    input::adjust(how, &mut plan);
+    input::check_effort(how, &plan, experiment.units())?;
+    Ok(plan)
+}
+
+/// All shots of a sweep over speeds; it serialises in SI.
+///
+/// ```
+/// use hertzchain::prelude::*;
+///
+/// let options = SweepOptions { speeds: "0.2,0.5,1".to_owned(), ..SweepOptions::default() };
+/// let swept = sweep(&preset("hertz")?, &options)?;
+/// let json = serde_json::to_value(&swept)?;
+/// // Hertz contacts alone: the time of flight follows v^(-1/5).
+/// assert!((json["power_law_incident"]["exponent"].as_f64().unwrap() + 0.2).abs() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct SweepResult {
+    /// The shots, in the order of the speeds.
+    pub points: Vec<BatchShot>,
+    /// Their table, with warnings and failures.
+    pub result: BatchResult,
+    /// Power laws and error control.
+    pub summary: SweepSummary,
+    /// A plan of one of the shots.
+    pub plan: Plan,
+}
+
+/// Computes times of flight against speed.
+///
+/// ```
+/// use hertzchain::prelude::*;
+///
+/// let options = SweepOptions { speeds: "log:0.1:1:5".to_owned(), ..SweepOptions::default() };
+/// let swept = sweep(&preset("dry")?, &options)?;
+/// assert!(swept.points.iter().all(|point| point.shot.is_ok()));
+/// # Ok::<(), hertzchain::Failure>(())
+/// ```
+///
+/// # Errors
+/// As [`batch`]; a list of speeds that is none. A speed that fails is that shot's error alone.
+pub fn sweep(experiment: &Experiment, options: &SweepOptions) -> Result<SweepResult, Failure> {
+    let batch = batch(experiment, speeds(experiment, options)?, options)?;
+    computed(experiment, options, &batch, &|| {})
+}
+
+/// The speeds that the options ask for.
+pub(crate) fn speeds(experiment: &Experiment, options: &SweepOptions) -> Result<Vec<f64>, Failure> {
+    let speeds = parse_speeds(&options.speeds).map_err(|e| Failure::User(e.to_string()))?;
+    check_speeds("--speeds", &options.speeds, experiment.units())?;
+    Ok(speeds)
+}
+
+/// Runs a batch over speeds, and calls `progress` after every shot.
+pub(crate) fn computed(
+    experiment: &Experiment,
+    options: &SweepOptions,
+    batch: &Batch,
+    progress: &(dyn Fn() + Sync),
+) -> Result<SweepResult, Failure> {
+    let mut points = Vec::new();
+    // Of a hundred thousand shots of a thousand beads these alone would take 0.8 GB.
+    let take = |mut point: BatchShot| {
+        if let Ok(shot) = &mut point.shot {
+            shot.velocity_m_s = Vec::new();
+        }
+        points.push(point);
+    };
+    let (result, calibration) =
+        pool(options)?.install(|| batch.run_each(Shard::WHOLE, progress, take));
+    let mut summary = SweepSummary::new(experiment, &result, calibration.as_ref());
+    summary.assumed_model = input::assumed(&options.input);
+    Ok(SweepResult { points, result, summary, plan: plan(experiment, options)? })
+}
+
+/// As many threads as the options ask for.
+pub(crate) fn pool(options: &SweepOptions) -> Result<rayon::ThreadPool, Failure> {
+    let threads = options.threads.map_or(0, |threads| threads.0);
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
+}
+
+/// A sweep without its shots.
+///
+/// ```
+/// use hertzchain::prelude::*;
+/// use hertzchain::sweep::SweepSummary;
+///
+/// let row = preset("hertz")?;
+/// let batch = hertzchain::sweep::batch(&row, vec![0.2, 0.4], &SweepOptions::default())?;
+/// let (result, calibration) = batch.run_each(Shard::WHOLE, &|| {}, |_| {});
+/// let summary = SweepSummary::new(&row, &result, calibration.as_ref());
+/// assert!(summary.error_control.starts_with("per shot"), "{}", summary.error_control);
+/// # Ok::<(), hertzchain::Failure>(())
+/// ```
+#[derive(Debug, Serialize)]
+pub struct SweepSummary {
+    /// The default experiment that was assumed, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub assumed_model: Option<String>,
+    calibration: Option<CalibrationView>,
+    /// How errors were controlled, and why.
+    pub error_control: String,
+    /// Name of the experiment.
+    pub experiment: String,
+    power_law_incident: LawView,
+    power_law_reflected: LawView,
+}
+
+impl SweepSummary {
+    /// Summarises a batch over speeds.
+    #[must_use]
+    pub fn new(
+        experiment: &Experiment,
+        result: &BatchResult,
+        calibration: Option<&Calibration>,
+    ) -> Self {
+        let law = |of| LawView::of(result.rows.law(of, result.accuracy));
+        Self {
+            assumed_model: None,
+            calibration: calibration.map(CalibrationView::of),
+            error_control: result.error_control.clone(),
+            experiment: experiment.name().to_owned(),
+            power_law_incident: law(Column::Incident),
+            power_law_reflected: law(Column::Reflected),
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct CalibrationView {
+    count: usize,
+    accuracy_reached: f64,
+    way: String,
+}
+
+impl CalibrationView {
+    fn of(calibration: &Calibration) -> Self {
+        let (count, accuracy_reached) = (calibration.shots, calibration.reached);
+        Self { count, accuracy_reached, way: calibration.to_string() }
+    }
+}
+
+/// A fit of times against speed, with its standard errors and with what the accuracies of the
+/// times alone leave open. Two speeds determine no errors and no R²: null.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum LawView {
+    Missing {
+        missing: String,
+    },
+    Law {
+        covariance: f64,
+        exponent: f64,
+        exponent_accuracy: Option<f64>,
+        exponent_error: f64,
+        prefactor_accuracy_s: Option<f64>,
+        prefactor_error_s: f64,
+        prefactor_s: f64,
+        r_squared: Option<f64>,
+        residuals: Vec<f64>,
+        speeds: usize,
+    },
+}
+
+impl LawView {
+    fn of((law, least): (Result<PowerLaw, FitError>, Result<Uncertainty, FitError>)) -> Self {
+        let least = least.ok();
+        match law {
+            Err(error) => Self::Missing { missing: missing::law(&error) },
+            Ok(law) => Self::Law {
+                covariance: law.covariance,
+                exponent: law.exponent,
+                exponent_accuracy: least.as_ref().map(|least| least.exponent),
+                exponent_error: law.exponent_error,
+                prefactor_accuracy_s: least.map(|it| law.prefactor * it.prefactor_relative),
+                prefactor_error_s: law.prefactor_error,
+                prefactor_s: law.prefactor,
+                r_squared: (law.residuals.len() > 2).then_some(law.r_squared),
+                speeds: law.residuals.len(),
+                residuals: law.residuals,
+            },
+        }
+    }
+}
+
+impl Serialize for SweepResult {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct View<'a> {
+            #[serde(flatten)]
+            summary: &'a SweepSummary,
+            points: Points<'a>,
+        }
+        View { summary: &self.summary, points: Points(self) }.serialize(serializer)
+    }
+}
+
+struct Points<'a>(&'a SweepResult);
+
+impl Serialize for Points<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let SweepResult { points, result, plan, .. } = self.0;
+        serializer.collect_seq(points.iter().map(|it| PointView::of(it, result.units, plan)))
+    }
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum PointView<'a> {
+    Failed { speed_m_s: f64, error: String },
+    Shot(Box<ShotView<'a>>),
+}
+
+impl<'a> PointView<'a> {
+    fn of(point: &'a BatchShot, units: Units, plan: &Plan) -> Self {
+        let speed_m_s = point.speed_m_s;
+        match &point.shot {
+            Err(error) => Self::Failed { speed_m_s, error: error.to_string() },
+            Ok(shot) => Self::Shot(Box::new(ShotView::of_sweep((point, shot), units, plan))),
+        }
+    }
+}
