@@ -66,7 +66,6 @@ impl Panel {
 /// assert!(svg.starts_with("<svg"));
 /// ```
 #[derive(Debug, Clone)]
-#[must_use]
 pub struct Figure {
     width_mm: f64,
     pub(crate) height_mm: f64,

@@ -17,7 +17,6 @@ const MISSING: u8 = 255;
 
 /// Values on a regular grid, to be shown as colours.
 #[derive(Debug, Clone, PartialEq)]
-#[must_use]
 pub struct HeatMap {
     columns: usize,
     rows: usize,

@@ -77,7 +77,6 @@ const MARGINS: f64 = 6.0;
 
 /// Rows are claims, columns readings, cells verdicts.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[must_use]
 pub struct VerdictMatrix {
     columns: Vec<String>,
     rows: Vec<(String, Vec<Verdict>)>,

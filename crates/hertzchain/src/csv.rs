@@ -68,7 +68,6 @@ impl Cell {
 
 impl Csv {
     /// A table with these titles.
-    #[must_use]
     pub(crate) fn new<T: Into<Cell>>(titles: impl IntoIterator<Item = T>) -> Self {
         // Lines of any length, so that writing to memory has no way to fail.
         let writer = WriterBuilder::new().flexible(true).from_writer(Vec::new());
@@ -76,7 +75,6 @@ impl Csv {
     }
 
     /// The same with a line more.
-    #[must_use]
     pub(crate) fn with<T: Into<Cell>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
         let cells = cells.into_iter().map(|cell| cell.into().text());
         let written = self.0.write_record(cells);
@@ -85,7 +83,6 @@ impl Csv {
     }
 
     /// The same with a line more for each item.
-    #[must_use]
     pub(crate) fn with_all<I, T: Into<Cell>, L: IntoIterator<Item = T>>(
         self,
         items: impl IntoIterator<Item = I>,
@@ -96,7 +93,6 @@ impl Csv {
     }
 
     /// As text.
-    #[must_use]
     pub(crate) fn text(self) -> String {
         // Memory takes all there is, and cells are text: neither of both can fail.
         let bytes = self.0.into_inner().unwrap_or_default();
@@ -105,7 +101,6 @@ impl Csv {
 }
 
 /// A square table: names along and down.
-#[must_use]
 pub(crate) fn square(names: &[&str], value: impl Fn(usize, usize) -> Option<f64>) -> Csv {
     let titles = std::iter::once("name").chain(names.iter().copied());
     let line = |(i, name): (usize, &&str)| {

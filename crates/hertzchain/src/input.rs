@@ -31,7 +31,6 @@ pub(crate) fn open_or(input: &Input, usual: &str) -> Result<Experiment, Failure>
 
 /// That an experiment which was not named is the paper's dry chain: the first line of what
 /// comes of it.
-#[must_use]
 pub(crate) fn assumed(input: &Input) -> Option<String> {
     let is_named = input.file.is_some() || input.preset.is_some();
     (!is_named).then(|| assumed_preset("experiment", "dry chain", USUAL, "FILE or --preset NAME"))
@@ -83,7 +82,6 @@ pub(crate) fn at_speed<T>(
 }
 
 /// The option by which a speed was given.
-#[must_use]
 pub(crate) fn option(given: &Given) -> String {
     format!("--speed {}", given.text())
 }

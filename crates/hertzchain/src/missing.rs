@@ -7,7 +7,6 @@ use hertzchain_experiment::Units;
 use hertzchain_measure::signal::FitError;
 
 /// The reason, as the end of a sentence.
-#[must_use]
 pub(crate) fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String {
     let time = |time_s: f64| Style::brief(units).quantity(time_s, "s");
     match (far, error) {
@@ -26,7 +25,6 @@ pub(crate) fn reason(far: &FarEnd, units: Units, error: &PassageError) -> String
 }
 
 /// Why times of flight have no power law.
-#[must_use]
 pub(crate) fn law(error: &FitError) -> String {
     match error {
         FitError::TooFew => "fewer than two speeds have a time of flight".to_owned(),

@@ -28,26 +28,22 @@ pub(crate) struct Style {
 
 impl Style {
     /// Digits that an accuracy is worth, one to spare.
-    #[must_use]
     pub(crate) fn of_accuracy(accuracy: f64, units: Units) -> Self {
         let digits = (-accuracy.log10()).ceil().clamp(3.0, 15.0) as usize + 1;
         Self { digits, units }
     }
 
     /// A few digits, for what need not be exact.
-    #[must_use]
     pub(crate) fn brief(units: Units) -> Self {
         Self { digits: 6, units }
     }
 
     /// A number with its unit, with a prefix where that is usual.
-    #[must_use]
     pub(crate) fn quantity(self, value: f64, unit: &str) -> String {
         self.scaled(value, unit, digits)
     }
 
     /// The same with all digits, zeros at the end too: they are known.
-    #[must_use]
     pub(crate) fn exact(self, value: f64, unit: &str) -> String {
         self.scaled(value, unit, |value, digits| {
             format!("{value:.*}", decimals(value.abs(), digits))
@@ -73,14 +69,12 @@ impl Style {
 }
 
 /// Decimals that give a number of this size so many significant digits.
-#[must_use]
 pub(crate) fn decimals(size: f64, digits: usize) -> usize {
     let whole = if size > 0.0 && size.is_finite() { size.log10().floor() as i32 + 1 } else { 1 };
     usize::try_from(digits as i32 - whole).unwrap_or(0).min(15)
 }
 
 /// A number with so many significant digits, trailing zeros dropped.
-#[must_use]
 pub(crate) fn digits(value: f64, digits: usize) -> String {
     let rounded = format!("{value:.*e}", digits.saturating_sub(1));
     let number: f64 = rounded.parse().unwrap_or(value);

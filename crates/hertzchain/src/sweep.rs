@@ -169,7 +169,6 @@ pub struct SweepSummary {
 
 impl SweepSummary {
     /// Summarises a batch over speeds.
-    #[must_use]
     pub fn new(
         experiment: &Experiment,
         result: &BatchResult,

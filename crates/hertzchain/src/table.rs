@@ -5,7 +5,6 @@ use serde_json::{Map, Value};
 
 /// A number with the fewest digits that give it back exactly: tiny and huge
 /// ones with an exponent, nothing for what is not a number.
-#[must_use]
 pub(crate) fn cell(value: f64) -> String {
     let size = value.abs();
     match value.is_nan() {
@@ -16,7 +15,6 @@ pub(crate) fn cell(value: f64) -> String {
 }
 
 /// The end of a column's name: its unit, none in a dimensionless chain.
-#[must_use]
 pub(crate) fn suffix(unit: &str, units: Units) -> String {
     match units {
         Units::Si => format!("_{}", unit.replace('/', "_").to_lowercase()),
@@ -28,7 +26,6 @@ pub(crate) fn suffix(unit: &str, units: Units) -> String {
 const UNITS: [&str; 6] = ["_per_s", "_m_s", "_s", "_m", "_n", "_j"];
 
 /// A name without its unit.
-#[must_use]
 pub(crate) fn without_unit(name: &str) -> &str {
     let stripped = UNITS.iter().find_map(|unit| name.strip_suffix(unit));
     stripped.unwrap_or(name)
@@ -36,7 +33,6 @@ pub(crate) fn without_unit(name: &str) -> &str {
 
 /// Results with names as they suit the units: a dimensionless chain's have
 /// none. Names of laws stay as they are.
-#[must_use]
 pub(crate) fn named(results: Value, units: Units) -> Value {
     match (results, units) {
         (results, Units::Si) => results,

@@ -113,7 +113,6 @@ pub fn measure(files: &[PathBuf], options: &Options, watch: &dyn Watch) -> Measu
 
 /// Measures records in memory, as those of files: each is a shot, or a recording of several that is
 /// cut. Their `file` is a name.
-#[must_use]
 pub fn measure_records(records: Vec<Record>, options: &Options, watch: &dyn Watch) -> Measurement {
     let records = records.into_iter().flat_map(|record| {
         let file = record.file.clone();

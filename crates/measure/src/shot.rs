@@ -124,7 +124,6 @@ impl Shot {
 
     /// Codes of the reasons why it counts in no mean, the reference's; none if it counts. Which of two
     /// ambiguous maxima is meant is decided by all shots of a speed, and is not among them.
-    #[must_use]
     pub fn reasons(&self, keep_dubious: bool) -> Vec<&'static str> {
         let grave = self.doubts.iter().filter(|flag| flag.is_grave() && !keep_dubious);
         let own = [

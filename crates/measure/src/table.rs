@@ -39,7 +39,6 @@ fn table(titles: Line, lines: impl Iterator<Item = Line>) -> impl Iterator<Item 
 }
 
 /// One line a shot, with whether it counts in these curves.
-#[must_use]
 pub fn shots_csv(shots: &[Shot], curves: &Curves) -> String {
     shot_lines(shots, curves).collect()
 }

@@ -27,7 +27,6 @@ struct Shared {
 
 impl Stop {
     /// Returns a request that calls a function whenever a counter or the note has changed.
-    #[must_use]
     pub fn watched(watch: fn(&Self)) -> Self {
         Self(Arc::new(Shared { watch: Some(watch), ..Shared::default() }))
     }

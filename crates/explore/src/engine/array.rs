@@ -11,7 +11,6 @@ pub struct Array(pub Vec<f32>);
 
 impl Array {
     /// Returns numbers in single precision.
-    #[must_use]
     pub fn of<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> Self {
         Self(numbers.into_iter().map(|number| *number as f32).collect())
     }

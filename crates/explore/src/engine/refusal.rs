@@ -47,13 +47,11 @@ impl Refusal {
     }
 
     /// Returns the mistakes of an experiment's text.
-    #[must_use]
     pub fn of_text(text: &str, mistakes: &Mistakes) -> Self {
         Self::Mistakes(Mistake::all(text, mistakes.findings()))
     }
 
     /// Returns what kept a shot of an experiment's text from being computed.
-    #[must_use]
     pub fn of_study(text: &str, error: StudyError) -> Self {
         match error {
             StudyError::Mistakes(mistakes) => Self::of_text(text, &mistakes),
@@ -69,7 +67,6 @@ impl Refusal {
 
 impl Mistake {
     /// Returns findings with their places in the text as keys and indices.
-    #[must_use]
     pub fn all(text: &str, findings: &[Finding]) -> Vec<Self> {
         let document = Document::parse(text).ok();
         let mut places = Vec::new();

@@ -18,7 +18,6 @@ const SCRIPT: &str = include_str!("player.js");
 ///
 /// Positions are drawn with displacements multiplied by a stated factor.
 #[derive(Debug, Clone, PartialEq)]
-#[must_use]
 pub struct Animation {
     title: String,
     times_s: Vec<f64>,

@@ -44,7 +44,6 @@ pub enum Legend {
 ///
 /// Labels are in the markup of this crate: `$v_0$ (m/s)`, `$10^{-5}$`, `$\Delta$`.
 #[derive(Debug, Clone, PartialEq)]
-#[must_use]
 pub struct Chart {
     pub(crate) title: String,
     pub(crate) x: Axis,
@@ -240,7 +239,6 @@ pub fn case_look(case: &str, number: usize) -> (Colour, Marker) {
 /// Points that are not finite, or not positive on a logarithmic axis, are left
 /// out and break the line.
 #[derive(Debug, Clone, PartialEq)]
-#[must_use]
 pub struct Series {
     pub(crate) name: String,
     pub(crate) x: Vec<f64>,

@@ -156,7 +156,7 @@ pub fn data(file: &Path, measured: &Measured, case: Option<&str>) -> Result<Data
 ///
 /// # Errors
 /// A table that can't be used.
-pub(crate) fn all_oils(file: Option<&Path>) -> Result<Vec<Oil>, Failure> {
+pub fn all_oils(file: Option<&Path>) -> Result<Vec<Oil>, Failure> {
     let mut all = known_oils().map_err(|error| Failure::Ours(error.to_string()))?;
     if let Some(file) = file {
         let unread = |error| Failure::User(format!("--oils {}: {error}", file.display()));

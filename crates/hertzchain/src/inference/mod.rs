@@ -333,10 +333,11 @@ fn set_short_name(
             set.name
         )));
     };
-    let value = (path, set.text.as_str());
-    Ok(match path.strip_suffix(".prefactor") {
-        Some(law) => experiment.set_text(&[value, (&format!("{law}.exponent"), "0")]),
-        None => experiment.set_text(&[value]),
+    let text = set.text.as_str();
+    Ok(match experiment.get(path) {
+        Ok(_) => experiment.set_text(&[(path, text)]),
+        Err(_) => experiment
+            .set_text(&[(&format!("{path}.prefactor"), text), (&format!("{path}.exponent"), "0")]),
     })
 }
 

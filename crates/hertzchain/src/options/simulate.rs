@@ -140,7 +140,6 @@ impl ShotOptions {
     /// assert_eq!(shot(&preset("dry")?, &ShotOptions::at(0.5))?.speed_m_s, Some(0.5));
     /// # Ok::<(), hertzchain::Failure>(())
     /// ```
-    #[must_use]
     pub fn at(speed_m_s: f64) -> Self {
         Self { speed: Some(Given::plain(speed_m_s)), ..Self::default() }
     }
@@ -154,7 +153,6 @@ impl CheckOptions {
     /// assert!(check(&preset("dry")?, &CheckOptions::at(0.5)).is_ok());
     /// # Ok::<(), hertzchain::Failure>(())
     /// ```
-    #[must_use]
     pub fn at(speed_m_s: f64) -> Self {
         Self { speed: Some(Given::plain(speed_m_s)), ..Self::default() }
     }

@@ -58,10 +58,11 @@ const VENDORS: [(usize, &[u8], &str, &str); 12] = [
 ];
 
 /// Whether a file's extension is one of recordings that are read.
-#[must_use]
 pub fn is_recording(file: &Path) -> bool {
     let extension = extension(file);
     FORMATS.iter().any(|format| format.2.contains(&&*extension))
+}
+
 #[cfg(not(feature = "hdf5"))]
 fn open_hdf5(file: &Path, _options: &ReadOptions) -> Result<Raw, MeasureError> {
     let detail = "HDF5, which this build does not read: compile it with the feature `hdf5`";
@@ -109,7 +110,6 @@ impl Iterator for Records {
 
 impl Records {
     /// A record in memory, divided and checked as those of a file.
-    #[must_use]
     pub fn of(record: Record, options: &ReadOptions) -> Self {
         let file = record.file.clone();
         Self::new(&file, Box::new(std::iter::once(Ok(record))), options)

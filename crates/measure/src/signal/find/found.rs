@@ -73,7 +73,6 @@ impl QualityFlag {
 
 impl QualityFlag {
     /// A short code, without the pulse.
-    #[must_use]
     pub fn code(&self) -> &'static str {
         match self {
             Self::Saturation(_) => "saturated",
