@@ -13,6 +13,10 @@ lint:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets --locked -- -D warnings
 
+# Workflow files and shell scripts (needs npm)
+lint-workflows:
+    packaging/lint-workflows
+
 # Licences and advisories of the dependencies (needs cargo-deny)
 deny:
     cargo deny check

@@ -7,6 +7,8 @@ FOLDER = Path(__file__).resolve().parent
 sys.path.insert(0, str(FOLDER))
 
 import generate  # noqa: E402
+from docutils import nodes  # noqa: E402
+from latex2mathml.converter import convert  # noqa: E402
 from pybtex.plugin import register_plugin  # noqa: E402
 from pybtex.style.formatting.unsrt import Style  # noqa: E402
 from pybtex.style.labels import BaseLabelStyle  # noqa: E402
@@ -69,10 +71,15 @@ napoleon_use_ivar = True
 # Names in type fields of docstrings are words of NumPy's convention, not all of them targets.
 nitpicky = False
 
+# Equations are MathML: pages load nothing from elsewhere.
+html_math_renderer = "mathml"
+
 html_theme = "pydata_sphinx_theme"
 html_title = "hertzchain"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+# The explorer and the crates' documentation, as docs/build puts them there.
+html_extra_path = [path.as_posix() for path in [generate.EXTRA] if path.exists()]
 html_theme_options = {
     "show_toc_level": 2,
     "navigation_with_keys": False,
@@ -84,8 +91,17 @@ html_sidebars = {"index": []}
 html_show_sourcelink = False
 
 
+def equation(translator, node):
+    """Writes an equation, in its line or in a line of its own."""
+    inline = isinstance(node, nodes.math)
+    text = convert(node.astext(), display="inline" if inline else "block")
+    translator.body.append(text if inline else f'<div class="equation">{text}</div>')
+    raise nodes.SkipNode
+
+
 def setup(app):
     """Pages that come from declarations are written before sources are read; links are completed."""
+    app.add_html_math_renderer("mathml", (equation, None), (equation, None))
     generate.write(FOLDER)
     app.connect("source-read", generate.complete)
     app.connect("autodoc-process-docstring", generate.complete_docstring)

@@ -17,7 +17,12 @@ ROOT = Path(__file__).resolve().parent.parent
 BIBLIOGRAPHY = (ROOT / "references.bib").read_text(encoding="utf-8")
 # Links that leave docs/.
 OUTSIDE = re.compile(r"\[([^\]]+)\]\((?:\.\./)+((?:crates|experiments|bench)[^)#]*|[A-Z]+\.md)[^)]*\)")
-FRAME = '<iframe class="film" src="../_static/first-chain.html" title="Film of the shot" loading="lazy"></iframe>'
+PAGE = re.compile(r"\bdocs/((?:tutorials|how-to|reference|explanation)/[\w-]+)\.md(?:#[\w-]+)?")
+# What docs/build puts beside the pages.
+EXTRA = ROOT / "target/docs/extra"
+FILM = '<iframe class="film" src="../_static/first-chain.html" title="Film of the shot" loading="lazy"></iframe>'
+EXPLORER = """<iframe class="explorer" src="../explorer.html" title="The explorer" loading="lazy"></iframe>
+<p><a href="../explorer.html">The explorer in a page of its own</a></p>"""
 KEYS = set(re.findall(r"^@\w+\{(\w+),", BIBLIOGRAPHY, re.MULTILINE))
 
 
@@ -62,9 +67,22 @@ def complete(_app: Any, page: str, source: list[str]) -> None:
 
 
 def completed(text: str) -> str:
-    text = text.replace("<!-- film -->", f"```{{raw}} html\n{FRAME}\n```")
+    text = text.replace("<!-- film -->", raw(FILM))
+    if (EXTRA / "explorer.html").exists():
+        text = re.sub(r"<!-- explorer -->.*?<!-- end -->", raw(EXPLORER), text, flags=re.DOTALL)
+    if (EXTRA / "rust").exists():
+        text = re.sub(r"^\| `(hertzchain[\w-]*)` \|", crate, text, flags=re.MULTILINE)
     text = re.sub(r"(?<![\]`\w])\[(\w+\d{4})\](?!\()", lambda found: cited(found, "{cite:p}"), text)
     return OUTSIDE.sub(r"\1 (`\2`)", text)
+
+
+def crate(found: re.Match[str]) -> str:
+    """A crate's name in a table, as a link to its first page."""
+    return f'| <a href="../rust/{found[1].replace("-", "_")}/index.html"><code>{found[1]}</code></a> |'
+
+
+def raw(html: str) -> str:
+    return f"```{{raw}} html\n{html}\n```"
 
 
 def cited(found: re.Match[str], role: str) -> str:
@@ -72,8 +90,12 @@ def cited(found: re.Match[str], role: str) -> str:
 
 
 def complete_docstring(_app: Any, _what: str, _name: str, _thing: Any, _options: Any, lines: list[str]) -> None:
-    """The same for docstrings, which are reStructuredText: there a name that ends in `_` would be a link."""
+    """The same for docstrings, which are reStructuredText: there a name that ends in `_` would be a link.
+
+    Files of docs/ become links to their pages.
+    """
     named = (re.sub(r"\b(?:options\.)?Path_(?!\w)", "path", line) for line in lines)
+    named = (PAGE.sub(r":doc:`\1 </\1>`", line) for line in named)
     lines[:] = [re.sub(r"\[(\w+\d{4})\]", lambda found: cited(found, ":cite:p:"), line) for line in named]
 
 

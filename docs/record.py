@@ -39,6 +39,8 @@ def main() -> None:
     Path("shots").mkdir(exist_ok=True)
     text("shots/shot.csv", "Time (s),Volts", zip(moments_s, summed))
     text("shots.csv", "file,case,speed,speed error", [("shots/shot.csv", "dry", 0.5, 0.0005)])
+    tdms("run.tdms", [*summed, *[0.0] * 20_000, *summed])
+    text("run-tdms.csv", "file,shot,case,speed", [("run.tdms", 1, "dry", 0.5), ("run.tdms", 2, "dry", 0.5)])
 
 
 def sampled(moments_s: list[float], time_s: tuple[float, ...], values: tuple[float, ...]) -> Iterator[float]:
@@ -81,6 +83,15 @@ def wav(name: str, values: list[float]) -> None:
     with wave.open(name, "wb") as file:
         file.setparams((1, 2, round(1 / STEP_S), 0, "NONE", ""))
         file.writeframes(b"".join(struct.pack("<h", int(9000 * value + random.gauss(0, 3))) for value in values))
+
+
+def tdms(name: str, values: list[float]) -> None:
+    """One segment with one channel; 10 is the type of doubles."""
+    channel, interval = (struct.pack("<I", len(word)) + word for word in (b"/'run'/'ai0'", b"wf_increment"))
+    meta = struct.pack("<I", 1) + channel + struct.pack("<IIIQ", 20, 10, 1, len(values))
+    meta += struct.pack("<I", 1) + interval + struct.pack("<Id", 10, STEP_S)
+    lead = struct.pack("<4sIIQQ", b"TDSm", 14, 4713, len(meta) + 8 * len(values), len(meta))
+    Path(name).write_bytes(lead + meta + struct.pack(f"<{len(values)}d", *values))
 
 
 if __name__ == "__main__":

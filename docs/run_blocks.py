@@ -21,6 +21,8 @@ Comments before a block, invisible on the page, change this:
 <!-- before: SCRIPT -->    a bash script that is run first, such as "$DOCS/record.py", which makes recordings
 <!-- tested by: FILE -->   another test of this repository runs the next block
 <!-- rust: FILE -->        that test compiles and runs the page's blocks of Rust
+<!-- until: TEXT -->       each command of the next block is ended once it has printed TEXT
+<!-- wheel: -->            the next block installs a wheel: executed with --wheel, beside a copy of it
 <!-- not run: REASON -->   the next block is not executed
 """
 
@@ -33,11 +35,12 @@ import tempfile
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from shutil import copy
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ["README.md", "docs/tutorials", "docs/how-to", "docs/reference", "docs/explanation"]
 PIECE = re.compile(
-    r"^```(?P<language>[\w-]*|\{[\w-]+\})\n(?P<code>.*?)^```$|^<!--\s*(?P<kind>before|tested by|rust|not run):(?P<text>.*?)-->",
+    r"^```(?P<language>[\w-]*|\{[\w-]+\})\n(?P<code>.*?)^```$|^<!--\s*(?P<kind>before|tested by|rust|until|wheel|not run):(?P<text>.*?)-->",
     re.MULTILINE | re.DOTALL,
 )
 NUMBER = re.compile(r"[-+−]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -68,14 +71,15 @@ class BlockError(Exception):
 class Page:
     """One page, its folder and its processes."""
 
-    def __init__(self, path: Path, folder: Path, program: Path) -> None:
-        self.path, self.folder = path, folder
+    def __init__(self, path: Path, folder: Path, program: Path, wheel: Path | None) -> None:
+        self.path, self.folder, self.wheel = path, folder, wheel
         search = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
         self.environment = {**os.environ, "PATH": search, "MPLBACKEND": "Agg", "NO_COLOR": "1", "DOCS": f"{ROOT / 'docs'}"}
         self.printed: str | None = None
         self.experiment: str | None = None
         self.python: subprocess.Popen[str] | None = None
         self.rust_is_run = False
+        self.until: str | None = None
 
     def run(self) -> int:
         """Executes all blocks; returns their number."""
@@ -101,6 +105,13 @@ class Page:
         if kind == "before":
             self.shell(text)
             return False
+        if kind == "wheel":
+            if self.wheel:
+                copy(self.wheel, self.folder)
+            return not self.wheel
+        if kind == "until":
+            self.until = text
+            return False
         if kind != "not run" and self.path.name not in (ROOT / text).read_text(encoding="utf-8"):
             raise BlockError(f"{text} does not read this page")
         self.rust_is_run |= kind == "rust"
@@ -109,6 +120,9 @@ class Page:
     def block(self, language: str, code: str) -> int:
         """Executes a block; returns 1 if it is one to execute."""
         match language:
+            case "sh" if self.until:
+                self.ended(code, self.until)
+                self.until = None
             case "sh":
                 self.printed = self.shell(code)
             case "python":
@@ -141,6 +155,24 @@ class Page:
         if done.returncode:
             raise BlockError(f"exit code {done.returncode}\n{code}\n{done.stdout}")
         return done.stdout
+
+    def ended(self, code: str, text: str) -> None:
+        """Runs commands that go on until they are ended, one a line."""
+        for command in code.splitlines():
+            with subprocess.Popen(
+                ["bash", "-c", f"exec {command}"],
+                cwd=self.folder,
+                env=self.environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+            ) as process:
+                assert process.stdout
+                printed = next((line for line in process.stdout if text in line), None)
+                process.terminate()
+            if printed is None:
+                raise BlockError(f"{command}: ends without printing {text!r}")
 
     def statements(self, code: str) -> str:
         if not self.python:
@@ -252,12 +284,12 @@ def pages(names: list[str]) -> list[Path]:
     return [page for path in paths for page in (sorted(path.glob("*.md")) if path.is_dir() else [path])]
 
 
-def run(page: Path, program: Path, keep: Path | None) -> str:
+def run(page: Path, program: Path, keep: Path | None, wheel: Path | None = None) -> str:
     """Executes a page; returns a line for the report."""
     with tempfile.TemporaryDirectory() as folder:
         work = Path(keep or folder) / page.stem
         work.mkdir(parents=True, exist_ok=True)
-        count = Page(page, work, program).run()
+        count = Page(page, work, program, wheel).run()
     return f"{count:3} blocks  {page.relative_to(ROOT)}"
 
 
@@ -265,6 +297,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Execute the code blocks of documentation pages.")
     parser.add_argument("pages", nargs="*", default=PAGES, help="files and folders")
     parser.add_argument("--program", type=Path, default=ROOT / "target/release/hertzchain", help="the program to run")
+    parser.add_argument("--wheel", type=Path, help="this machine's wheel, for blocks that install it")
     parser.add_argument("--keep", type=Path, help="a folder that keeps what the blocks write")
     parser.add_argument("--jobs", type=int, default=2, help="pages at a time")
     options = parser.parse_args()
@@ -273,7 +306,7 @@ def main() -> int:
         parser.error(f"{program} is not there: cargo build --release, or name another by --program")
     failed = 0
     with ThreadPoolExecutor(options.jobs) as pool:
-        started = [(page, pool.submit(run, page, program, options.keep)) for page in pages(options.pages)]
+        started = [(page, pool.submit(run, page, program, options.keep, options.wheel)) for page in pages(options.pages)]
         for _page, job in started:
             try:
                 print(job.result(), flush=True)

@@ -1,9 +1,5 @@
 //! The explorer: a page on which a row's wave is seen and every number of it can be turned.
-//!
-//! [`engine::answer`] is the one function behind the page: a [`Request`] in, a [`Reply`] out, both
-//! JSON. [`server::serve`] puts it behind a page on this machine alone; [`respond`] makes it a program
-//! that WebAssembly runs inside the page. What is no simulation, measuring and fitting, comes from the
-//! crate above by [`Verbs`].
+#![doc = include_str!("../README.md")]
 
 pub mod engine;
 mod respond;

@@ -1,8 +1,5 @@
 //! From measurements to parameters: fits, uncertainty, identifiability, design.
-//!
-//! The numerics know nothing of chains: they see a [`Problem`], whose residuals are computed for
-//! many points at once. [`CurveProblem`] is that of measured times of flight against an experiment,
-//! [`PulseProblem`] that of whole records.
+#![doc = include_str!("../README.md")]
 
 mod compare;
 mod covariance;

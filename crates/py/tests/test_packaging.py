@@ -1,5 +1,6 @@
-"""Files of a release: the version stands in all of them."""
+"""Files of a release: what stands in several of them agrees."""
 
+import json
 import re
 import shutil
 import subprocess
@@ -25,3 +26,22 @@ def test_set_version_leaves_no_other_version(tmp_path):
         if name != "CHANGELOG.md":
             assert "98.1.2" not in text, name
     assert "\ndate-released: 2098-02-28\n" in (tmp_path / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_files_that_describe_the_software_agree():
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    keywords = re.findall(r"^  - (\w+(?: \w+)+)$", citation.partition("keywords:")[2], re.MULTILINE)
+    for name in ("codemeta.json", ".zenodo.json"):
+        described = json.loads((ROOT / name).read_text(encoding="utf-8"))
+        assert described["keywords"] == keywords, name
+        assert described["description"].removeprefix("Simulates") in " ".join(citation.split()), name
+    assert f"keywords = {json.dumps(keywords)}" in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+
+
+def test_the_paper_has_the_length_and_the_sections_that_its_journal_asks_for():
+    text = (ROOT / "docs/joss/paper.md").read_text(encoding="utf-8").split("---", 2)[2]
+    assert 750 <= len(text.split()) <= 1750
+    for title in ("Summary", "Statement of need", "State of the field", "Software design", "Research impact statement"):
+        assert f"\n# {title}\n" in text, title
+    keys = set(re.findall(r"^@\w+\{(\w+),", (ROOT / "references.bib").read_text(encoding="utf-8"), re.MULTILINE))
+    assert set(re.findall(r"@(\w+\d{4})", text)) <= keys
