@@ -15,6 +15,7 @@ use crate::spec::Spec;
 use crate::validity;
 use crate::values::Units;
 use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Section, Start};
+use std::collections::HashSet;
 use std::ops::RangeInclusive;
 
 /// The chain of an experiment, hit at this speed, and warnings about it.
@@ -51,6 +52,9 @@ pub(crate) fn chain(
     };
     chain.sections = scaled_sections(spec, &chain)?;
     warnings.extend(validity::warnings(spec, &chain));
+    // Groups of one material say the same of it.
+    let mut seen = HashSet::new();
+    warnings.retain(|one| seen.insert((one.span.clone(), one.message.clone())));
     Ok((chain, warnings))
 }
 

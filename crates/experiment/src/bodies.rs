@@ -256,7 +256,6 @@ impl BeadGroup {
                 warn(&spec.young_modulus.span, message, label);
             }
         }
-        warnings.dedup_by(|next, first| next.message == first.message);
         warnings
     }
 

@@ -4,7 +4,6 @@ use crate::failure::Failure;
 use crate::options::CampaignOptions;
 use hertzchain_experiment::Experiment;
 use hertzchain_sim::rig::{self, Done, Plan, Progress};
-use rayon::ThreadPoolBuilder;
 
 /// A campaign that is ready to run.
 ///
@@ -41,8 +40,8 @@ impl<'a> PreparedCampaign<'a> {
     /// A folder with something else in it, a recording that can't be written.
     pub fn run(&self, watch: &(dyn Fn(Progress) + Sync)) -> Result<Done, Failure> {
         let CampaignOptions { out, shard, threads, .. } = self.options;
-        let pool = ThreadPoolBuilder::new().num_threads(threads.map_or(0, |threads| threads.0));
-        let pool = pool.build().map_err(|error| Failure::Ours(format!("threads: {error}")))?;
+        let pool = hertzchain_sim::pool(threads.map_or(0, |threads| threads.0));
+        let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
         Ok(pool.install(|| rig::campaign(&self.plan, out, *shard, watch))?)
     }
 }

@@ -10,7 +10,6 @@ use hertzchain_sim::{
     Batch, BatchOptions, BatchResult, BatchShot, Calibration, Column, ErrorControl, Plan, Shard,
     parse_speeds,
 };
-use rayon::ThreadPoolBuilder;
 use serde::{Serialize, Serializer};
 
 /// A batch of shots of an experiment, computed as the options ask.
@@ -136,8 +135,7 @@ pub(crate) fn computed(
 /// As many threads as the options ask for.
 pub(crate) fn pool(options: &SweepOptions) -> Result<rayon::ThreadPool, Failure> {
     let threads = options.threads.map_or(0, |threads| threads.0);
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
+    hertzchain_sim::pool(threads).map_err(|error| Failure::Ours(format!("threads: {error}")))
 }
 
 /// A sweep without its shots.

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 
 /// Options that a Python call has otherwise or not at all: data are arguments, results are objects.
-const COMMAND_LINE: [&str; 14] = [
+const COMMAND_LINE: [&str; 15] = [
     "animate",
     "data",
     "dry_preset",
@@ -21,6 +21,7 @@ const COMMAND_LINE: [&str; 14] = [
     "out",
     "preset",
     "records",
+    "report",
     "resume",
     "shard",
     "dry",

@@ -66,7 +66,7 @@ def test_progress_is_told_of_fits_gauges_designs_and_single_shots():
 
 def test_a_bar_without_tqdm_says_how_to_get_it(small, monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
-    with pytest.raises(ModuleNotFoundError, match="pip install tqdm"):
+    with pytest.raises(ModuleNotFoundError, match=r"hertzchain\[progress\]"):
         hc.sweep(small, [0.5], progress=True)
 
 

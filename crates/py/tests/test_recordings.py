@@ -82,7 +82,7 @@ def test_what_can_not_be_read_is_told(tmp_path):
     assert found.refused and found.verdict
     with pytest.raises(hc.OptionError, match="no recordings"):
         hc.measure(tmp_path / "nothing") if (tmp_path / "nothing").mkdir() is None else None
-    with pytest.raises(hc.OptionError, match="rate = fast"):
+    with pytest.raises(hc.OptionError, match='rate = "fast"'):
         hc.measure(tmp_path / "empty.csv", rate="fast")
     with pytest.raises(hc.OptionError, match="volts"):
         hc.measure(np.zeros((2, 2, 2)))

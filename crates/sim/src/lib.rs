@@ -49,4 +49,4 @@ pub use result::{COLUMNS, Column, Failed, Law, Rows, WarningSummary};
 pub use shard::{Shard, StoredShard};
 pub use shot::{Flight, OF_PEAKS, Rebound, Shot, shoot, shoot_checked, shoot_estimated};
 pub use speeds::{parse_speed, parse_speeds, parse_time};
-pub use stop::{Stop, count_done, note_progress, stopped};
+pub use stop::{Stop, count_done, note_progress, pool, stopped};

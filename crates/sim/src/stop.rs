@@ -84,6 +84,14 @@ pub fn stopped() -> bool {
     OWN.with(|own| own.borrow().as_ref().is_some_and(Stop::is_asked))
 }
 
+/// As many threads as asked for, all cores' if 0, that check the calling thread's request.
+///
+/// # Errors
+/// When the system gives no threads.
+pub fn pool(threads: usize) -> Result<ThreadPool, ThreadPoolBuildError> {
+    OWN.with(|own| own.borrow().clone()).unwrap_or_default().pool(threads)
+}
+
 /// Counts so many more as done on the calling thread's [`Stop`], if it has one.
 pub fn count_done(more: usize) {
     with_own(|stop| stop.count(more as u64));
