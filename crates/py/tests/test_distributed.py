@@ -22,6 +22,7 @@ from hertzchain import distributed
 from hertzchain.inference import csv
 
 RIG = ROOT / "crates/sim/tests/small.toml"
+PAGE = ROOT / "docs/how-to/many-machines.md"
 SPEEDS = np.linspace(0.1, 1.0, 120)
 MODULI = np.array([[200e9], [213e9]])
 
@@ -48,6 +49,17 @@ def same(found: hc.Ensemble, expected: hc.Ensemble) -> None:
 
 def recordings(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.glob("*.h5")}
+
+
+def test_the_block_of_the_page_runs_on_a_cluster(client, tmp_path):
+    (block,) = (text for text in PAGE.read_text(encoding="utf-8").split("```") if "dask.distributed" in text)
+    code = block.removeprefix("python\n")
+    for there, here in (("scheduler:8786", client.scheduler.address), ("/shared/run", f"{tmp_path}/run")):
+        assert code.count(there) == 1, there
+        code = code.replace(there, here)
+    space = {"speeds": SPEEDS[:5], "moduli": MODULI}
+    exec(code, space)
+    same(space["found"], hc.ensemble(hc.preset("dry"), space["speeds"], {"young_modulus": MODULI}))
 
 
 def test_a_run_on_workers_has_the_bits_of_one_in_process(small, client, tmp_path):

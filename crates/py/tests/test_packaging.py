@@ -45,3 +45,13 @@ def test_the_paper_has_the_length_and_the_sections_that_its_journal_asks_for():
         assert f"\n# {title}\n" in text, title
     keys = set(re.findall(r"^@\w+\{(\w+),", (ROOT / "references.bib").read_text(encoding="utf-8"), re.MULTILINE))
     assert set(re.findall(r"@(\w+\d{4})", text)) <= keys
+
+
+def test_no_sentence_of_a_tutorial_is_longer_than_forty_words():
+    for page in (ROOT / "docs/tutorials").glob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        # Without code, comments, tables, headings and the addresses of links.
+        for pattern in (r"^```.*?^```$", r"<!--.*?-->", r"^[|#].*?$", r"\]\([^)]*\)"):
+            text = re.sub(pattern, "", text, flags=re.MULTILINE | re.DOTALL)
+        for sentence in re.split(r"(?<=[.!?:])\s+|\n\s*\n|\n- ", text):
+            assert len(sentence.split()) <= 40, f"{page.name}: {sentence}"
