@@ -2,7 +2,7 @@
 
 import { ask, decoded, newest, start } from "./engine.js";
 import { formula, html } from "./charts.js";
-import { copy, csv, figures, packed, picture, python, save, shell, slug, unpacked } from "./files.js";
+import { copy, csv, figures, packed, pdf, picture, python, save, shell, slug, unpacked } from "./files.js";
 import { Fit } from "./fit.js";
 import { Form, sentence, source } from "./form.js";
 import { plain, parts as quantityParts, quantity } from "./numbers.js";
@@ -18,6 +18,8 @@ const SAMPLES = { draft: 500, full: 1800 };
 /** Speeds of a curve, and where it runs for the paper's kind of row. */
 const CURVE = { draft: 24, full: 60 };
 const RANGE = [0.05, 2.5];
+// For the browser's console: `hertzchain.curve.full = 200`.
+hertzchain.curve = CURVE;
 
 const state = {
   text: "", tree: null, outline: null, mistakes: [], shot: null, motion: null, curve: null, reference: null, data: null,
@@ -58,7 +60,7 @@ function merged(before, after) {
   return [...before.filter((one) => !places.has(JSON.stringify(one.path))), ...after];
 }
 
-const check = newest(async () => {
+const check = newest(["check"], async () => {
   const work = queued;
   if (!work) return;
   queued = null;
@@ -129,7 +131,7 @@ function compute(draft) {
   sweep(draft);
 }
 
-const shoot = newest(async (draft) => {
+const shoot = newest(["shot"], async (draft) => {
   working(1);
   try {
     const shot = await ask("shot", { verb: "shot", text: state.text, samples: draft ? SAMPLES.draft : SAMPLES.full, draft: Boolean(draft) });
@@ -187,7 +189,7 @@ function drawShot() {
   tell();
 }
 
-const sweep = newest(async (draft) => {
+const sweep = newest(["curve", "reference"], async (draft) => {
   const { outline, text } = state;
   if (!outline?.speed_m_s) {
     state.curve = null;
@@ -324,12 +326,15 @@ function setTime(time) {
   showTime();
 }
 
+/** Draws the row at the present time. */
+const show = (canvas, size) => drawRow(canvas, state.motion, state.time, Number($("#magnify").value) || 1, { most: units(state).q(state.motion.most, "N", 3) }, size);
+
 function showTime() {
   const { motion, shot } = state;
   if (!motion) return;
   const of = units(state);
   const end = shownEnd();
-  const seen = drawRow($("#row"), motion, state.time, Number($("#magnify").value) || 1, { most: of.q(motion.most, "N", 3) });
+  const seen = show($("#row"));
   const open = seen.open.filter(Boolean).length;
   $("#clock").textContent = `t = ${of.scale === 1 ? plain(state.time, 4) : `${(state.time * 1e6).toFixed(1)} µs`}`;
   const slider = $("#time");
@@ -475,9 +480,17 @@ async function take(files) {
   }
 }
 
+/** Draws the row as a file has it: sharp, whatever the screen. */
+function row(canvas) {
+  const size = { width: 900, height: 190, ratio: 3 };
+  show(canvas, size);
+  return size;
+}
+
 function saved(what) {
   const name = slug(state.outline?.title ?? "row");
   const { shot, curve } = state;
+  const all = () => figures(state, plots, row);
   const done = {
     toml: () => save(`${name}.toml`, state.text, "application/toml"),
     signals: () => {
@@ -487,8 +500,9 @@ function saved(what) {
     },
     curve: () => curve && save(`${name}-tof.csv`, csv({ speed_m_s: curve.speed_m_s, tof_incident_s: curve.tof_incident_s, tof_reflected_s: curve.tof_reflected_s }), "text/csv"),
     print: () => print(),
-    svg: () => save(`${name}.svg`, figures(state, plots, $("#row")), "image/svg+xml"),
-    png: async () => save(`${name}.png`, await picture(figures(state, plots, $("#row"))), "image/png"),
+    svg: () => save(`${name}.svg`, all(), "image/svg+xml"),
+    png: async () => save(`${name}.png`, await picture(all())),
+    pdf: async () => save(`${name}.pdf`, await pdf(all())),
   }[what];
   return done?.();
 }

@@ -47,23 +47,32 @@ export function encoded(buffer) {
   return btoa(text);
 }
 
+/** Longest time that a newer call waits for the one under way, in ms. */
+const PATIENCE = 3000;
+
 /**
  * Runs the newest of many calls: while one is under way only the last that came waits, so that
- * a slider shows intermediate results however slow an answer is.
+ * a slider shows intermediate results; what takes too long is ended by its lanes.
  */
-export function newest(run) {
+export function newest(lanes, run) {
   let busy = false;
   let waiting = null;
+  let began = 0;
+  let late = 0;
   return async function call(...given) {
     if (busy) {
       waiting = given;
+      clearTimeout(late);
+      late = setTimeout(() => lanes.forEach(cancel), began + PATIENCE - performance.now());
       return;
     }
     busy = true;
+    began = performance.now();
     try {
       await run(...given);
     } finally {
       busy = false;
+      clearTimeout(late);
       const next = waiting;
       waiting = null;
       if (next) call(...next);

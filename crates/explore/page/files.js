@@ -43,7 +43,7 @@ function keys(series, right, y) {
   const group = svg("g");
   let x = right;
   for (const one of series) {
-    const width = one.name.length * 5.6;
+    const width = one.name.length * 6.2;
     group.append(svg("text", { x, y, "text-anchor": "end", "font-size": 10, "font-family": "system-ui, sans-serif", fill: colour("soft") }, one.name));
     group.append(svg("rect", { x: x - width - 12, y: y - 8, width: 8, height: 8, rx: 2, fill: one.colour }));
     x -= width + 22;
@@ -51,19 +51,21 @@ function keys(series, right, y) {
   return group;
 }
 
-/** All figures of the page as one SVG. */
+/** All figures of the page as one SVG; `row` draws the row on a canvas and returns its size. */
 export function figures(state, plots, row) {
   const charts = [[plots.signals, "Signals"], [plots.curve, "Time of flight against speed"], [plots.spacetime, "Contact forces in space and time"], [plots.energy, "Where the energy is"]];
   const wide = Math.max(...charts.map(([chart]) => chart.size.width));
   const tall = Math.max(...charts.map(([chart]) => chart.size.height));
   const [pad, head] = [20, 24];
   const width = 2 * wide + 3 * pad;
-  const rowTall = (row.clientHeight * (width - 2 * pad)) / row.clientWidth;
+  const canvas = document.createElement("canvas");
+  const drawn = row(canvas);
+  const rowTall = (drawn.height * (width - 2 * pad)) / drawn.width;
   const height = 50 + rowTall + 2 * (tall + head + pad) + pad;
   const text = (x, y, words, size, weight) => svg("text", { x, y, "font-size": size, "font-weight": weight, fill: colour("ink"), "font-family": "system-ui, sans-serif" }, words);
   const root = svg("svg", { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `0 0 ${width} ${height}` });
   root.append(svg("rect", { width, height, fill: colour("card") }), text(pad, 32, state.outline?.title ?? "", 20, 600));
-  root.append(svg("image", { x: pad, y: 44, width: width - 2 * pad, height: rowTall, href: row.toDataURL("image/png") }));
+  root.append(svg("image", { x: pad, y: 44, width: width - 2 * pad, height: rowTall, href: canvas.toDataURL("image/png") }));
   charts.forEach(([chart, title], at) => {
     const x = pad + (at % 2) * (wide + pad);
     const y = 50 + rowTall + pad + Math.floor(at / 2) * (tall + head + pad);
@@ -75,23 +77,59 @@ export function figures(state, plots, row) {
       root.append(svg("image", { x: x + 54, y: y + 32, width: inner, height: deep, preserveAspectRatio: "none", href: plots.map.toDataURL("image/png") }));
     }
     root.append(copy);
-    if (chart === plots.energy) root.append(keys(chart.spec?.series ?? [], x + chart.size.width, y));
+    if (chart === plots.energy) root.append(keys(chart.spec?.series ?? [], x + chart.size.width, y + chart.size.height + 20));
   });
   return new XMLSerializer().serializeToString(root);
 }
 
-/** The same as PNG, twice as fine. */
-export async function picture(text) {
+/** The same on a canvas, so many times as fine. */
+async function painted(text, times) {
   const url = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
   const image = new Image();
   image.src = url;
   await image.decode();
   const canvas = document.createElement("canvas");
-  canvas.width = 2 * image.naturalWidth;
-  canvas.height = 2 * image.naturalHeight;
+  canvas.width = times * image.naturalWidth;
+  canvas.height = times * image.naturalHeight;
   canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
   URL.revokeObjectURL(url);
-  return new Promise((done) => canvas.toBlob(done, "image/png"));
+  return canvas;
+}
+
+const blob = (canvas, kind, quality) => new Promise((done) => canvas.toBlob(done, kind, quality));
+
+/** The same as PNG, twice as fine. */
+export const picture = async (text) => blob(await painted(text, 2), "image/png");
+
+/** The same as PDF: one page, as wide as one of A4, with the figures as an image of some 300 dots an inch. */
+export async function pdf(text) {
+  const canvas = await painted(text, 3);
+  const image = new Uint8Array(await (await blob(canvas, "image/jpeg", 0.92)).arrayBuffer());
+  const [wide, tall] = [595, (595 * canvas.height) / canvas.width];
+  const drawing = `q ${wide} 0 0 ${tall.toFixed(2)} 0 0 cm /Figures Do Q`;
+  const about = `/Type /XObject /Subtype /Image /Width ${canvas.width} /Height ${canvas.height} /ColorSpace /DeviceRGB /BitsPerComponent 8 /Filter /DCTDecode`;
+  const objects = [
+    ["<< /Type /Catalog /Pages 2 0 R >>"],
+    ["<< /Type /Pages /Kids [3 0 R] /Count 1 >>"],
+    [`<< /Type /Page /Parent 2 0 R /MediaBox [0 0 ${wide} ${tall.toFixed(2)}] /Resources << /XObject << /Figures 5 0 R >> >> /Contents 4 0 R >>`],
+    [`<< /Length ${drawing.length} >>\nstream\n${drawing}\nendstream`],
+    [`<< ${about} /Length ${image.length} >>\nstream\n`, image, "\nendstream"],
+  ];
+  const parts = ["%PDF-1.4\n"];
+  const places = [];
+  let at = parts[0].length;
+  const put = (part) => {
+    parts.push(part);
+    at += part.length;
+  };
+  objects.forEach((object, index) => {
+    places.push(at);
+    [`${index + 1} 0 obj\n`, ...object, "\nendobj\n"].forEach(put);
+  });
+  const table = places.map((place) => `${String(place).padStart(10, "0")} 00000 n \n`).join("");
+  const from = at;
+  put(`xref\n0 ${places.length + 1}\n0000000000 65535 f \n${table}trailer\n<< /Size ${places.length + 1} /Root 1 0 R >>\nstartxref\n${from}\n%%EOF\n`);
+  return new Blob(parts, { type: "application/pdf" });
 }
 
 const range = (speeds) => `log:${speeds.from_m_s}:${speeds.to_m_s}:${speeds.count}`;

@@ -3,7 +3,6 @@
 import { ask, cancel, encoded, progress } from "./engine.js";
 import { Chart, colour, html } from "./charts.js";
 import { plain, split, typed, withError } from "./numbers.js";
-import { units } from "./plots.js";
 
 /** Largest file that the page takes, in bytes. */
 const LARGEST = 64 * 1024 * 1024;
@@ -123,7 +122,6 @@ export class Fit {
   }
 
   tell(data) {
-    const of = units(this.page.state);
     if (data.kind === "table") {
       this.about.replaceChildren(html("p", { class: "hint" }, `${data.name}: ${data.points.length} speeds.`));
       return;
@@ -141,7 +139,6 @@ export class Fit {
       ...[...new Set(notes)].filter(Boolean).slice(0, 6).map((note) => html("p", { class: "hint" }, String(note))),
       ...(measured.shots.length ? [] : [html("p", { class: "error" }, "No shot was found in it.")]),
     );
-    void of;
   }
 
   clear() {

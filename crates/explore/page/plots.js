@@ -67,7 +67,11 @@ export class Plots {
     const series = [{ name: "sensor bead", brief: "sensor", x, y: shot.motion.sensor, colour: colour("incident") }];
     if (shot.motion.wall.length) series.push({ name: "wall", x, y: shot.motion.wall, colour: colour("wall") });
     const overlay = aligned(state);
-    for (const [at, one] of overlay.entries()) series.push({ ...one, quiet: at > 0, x: one.time.map((time) => time * of.scale), colour: colour("record"), width: 1.3 });
+    for (const [at, one] of overlay.entries()) {
+      const x = one.time.map((time) => time * of.scale);
+      series.push({ name: one.name, brief: "recorded", y: one.y, quiet: at > 0, x, colour: colour("record"), width: 1.3 });
+      series.push({ name: `residual of ${one.name}`, brief: "residual", y: one.residual, quiet: at > 0, x, colour: colour("soft"), width: 1, opacity: 0.8 });
+    }
     const marks = [["incident", "incident"], ["wall", "wall"], ["reflected", "reflected"]].flatMap(([key, name]) =>
       shot[key] ? [{ x: shot[key].time_s * of.scale, y: shot[key].value_n, text: of.t(shot[key].time_s), colour: colour(name) }] : []);
     this.signals.draw({
@@ -267,29 +271,30 @@ function aligned(state) {
       time.push(when);
       y.push(volts[at] * scale);
     }
-    return { name: `recorded ${example.names[channel] ?? ""}`.trim(), brief: "recorded", time, y, rms: misfit(state, channel, example, time, y) };
+    const model = modelled(shot.motion, channel, example.channels.length === 1);
+    const residual = y.map((value, at) => value - model(time[at]));
+    return { name: `recorded ${example.names[channel] ?? ""}`.trim(), time, y, residual, rms: size(shot, time, residual) };
   });
 }
 
-/** Root mean square of recorded minus model until after the reflected pulse, over the peak. */
-function misfit(state, channel, example, time, y) {
-  const { shot } = state;
-  const { motion } = shot;
-  const summed = example.channels.length === 1 && motion.wall.length;
-  const model = (at) => {
-    const place = Math.min(motion.samples - 1, Math.round(at / motion.interval_s));
-    if (summed) return motion.sensor[place] + motion.wall[place];
-    return (channel === 1 ? motion.wall : motion.sensor)[place];
+/** The model's signal in a channel of a recording, of which a single one has both sensors' sum. */
+function modelled(motion, channel, single) {
+  const own = channel === 1 ? motion.wall : motion.sensor;
+  const other = single && motion.wall.length ? motion.wall : null;
+  return (time) => {
+    const place = Math.min(motion.samples - 1, time / motion.interval_s);
+    const low = Math.max(0, Math.min(motion.samples - 2, Math.floor(place)));
+    const between = (values) => values[low] + (values[low + 1] - values[low]) * (place - low);
+    return between(own) + (other ? between(other) : 0);
   };
-  let sum = 0;
-  let count = 0;
+}
+
+/** Root mean square of residuals until after the reflected pulse, over the peak. */
+function size(shot, time, residual) {
   const end = interesting(shot);
-  time.forEach((when, at) => {
-    if (when > end) return;
-    sum += (y[at] - model(when)) ** 2;
-    count++;
-  });
-  return count ? Math.sqrt(sum / count) / shot.incident.value_n : undefined;
+  const seen = residual.filter((_, at) => time[at] <= end);
+  const sum = seen.reduce((sum, one) => sum + one * one, 0);
+  return seen.length ? Math.sqrt(sum / seen.length) / shot.incident.value_n : undefined;
 }
 
 /** Paints forces of all contacts until a time, a pixel a contact and sample. */

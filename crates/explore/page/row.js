@@ -82,10 +82,9 @@ export class Motion {
   }
 }
 
-/** Draws a motion's row at a time on a canvas; returns the row's state. */
-export function drawRow(canvas, motion, time, magnify, words) {
-  const ratio = window.devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+/** Draws a motion's row at a time on a canvas, as the page shows it or at another size; returns the row's state. */
+export function drawRow(canvas, motion, time, magnify, words, size = {}) {
+  const { width, height, ratio } = { width: canvas.clientWidth, height: canvas.clientHeight, ratio: window.devicePixelRatio || 1, ...size };
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
@@ -125,7 +124,7 @@ export function drawRow(canvas, motion, time, magnify, words) {
   pen.textAlign = "left";
   pen.fillStyle = theme.soft;
   pen.fillText(`contact forces, up to ${words.most}${state.open.some(Boolean) ? "; boxes: open contacts" : ""}${bodies.some((body) => body.wet) ? "; dots below: wet" : ""}`, Math.max(6, left), bars.top + 8);
-  drawLabels(pen, theme, { bodies, place, middle, scale, state, largest });
+  drawLabels(pen, theme, { bodies, place, middle, scale, state, largest, width });
   return state;
 }
 
@@ -223,14 +222,14 @@ function drawBars(pen, theme, motion, state, place, { top, bottom }) {
   });
 }
 
-function drawLabels(pen, theme, { bodies, place, middle, scale, state, largest }) {
+function drawLabels(pen, theme, { bodies, place, middle, scale, state, largest, width }) {
   pen.font = "12px system-ui, sans-serif";
   pen.textAlign = "center";
   const above = middle - largest * scale - 14;
   const taken = [];
   const label = (text, x, ink, strong) => {
     const half = pen.measureText(text).width / 2 + 6;
-    x = Math.max(half, Math.min(pen.canvas.clientWidth - half, x));
+    x = Math.max(half, Math.min(width - half, x));
     if (taken.some(([a, b]) => x + half > a && x - half < b)) return;
     taken.push([x - half, x + half]);
     pen.fillStyle = ink;
@@ -242,5 +241,5 @@ function drawLabels(pen, theme, { bodies, place, middle, scale, state, largest }
   if (sensor >= 0) label(`sensor ${bodies[sensor].number}`, place[sensor], theme.incident, true);
   if (bodies[0].kind === "striker") label("striker", place[0], theme.soft);
   const last = bodies[bodies.length - 1];
-  if (last.kind === "half-bead" || last.kind === "plane") label("wall", pen.canvas.clientWidth, theme.wall, true);
+  if (last.kind === "half-bead" || last.kind === "plane") label("wall", width, theme.wall, true);
 }
