@@ -103,7 +103,6 @@ pub(crate) fn of_ratios(
     incident.iter().map(one).collect()
 }
 
-/// Covariance of both times at the mean speed over their product.
 fn relative_covariance(row: &SpeedRow) -> Option<f64> {
     let [forth, back] = row.at_mean_speed_s;
     let (forth, back) = (forth?, back?);

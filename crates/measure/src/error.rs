@@ -72,6 +72,8 @@ pub enum MeasureError {
     NotPositive(usize),
 }
 
+pub(crate) type Result<T, E = MeasureError> = std::result::Result<T, E>;
+
 impl MeasureError {
     /// What the system reports while a file is read.
     pub(crate) fn reading(file: &Path, cause: io::Error) -> Self {
@@ -113,28 +115,27 @@ impl MeasureError {
         name: &'static str,
         value: f64,
         expected: &'static str,
-    ) -> Result<(), Self> {
+    ) -> Result<()> {
         let error = Self::Option(name, value, expected);
         accepted.then_some(()).ok_or(error)
     }
 
-    pub(crate) fn positive(name: &'static str, value: f64) -> Result<(), Self> {
+    pub(crate) fn positive(name: &'static str, value: f64) -> Result<()> {
         let accepted = value > 0.0 && value.is_finite();
         Self::require(accepted, name, value, "a positive, finite number")
     }
 
-    pub(crate) fn enough(found: usize, needed: usize) -> Result<(), Self> {
+    pub(crate) fn enough(found: usize, needed: usize) -> Result<()> {
         (found >= needed).then_some(()).ok_or(Self::TooShort(found, needed))
     }
 }
 
 /// Rejects samples that are not finite numbers or whose squares, summed, would overflow.
-pub(crate) fn all_finite(samples: &[f64]) -> Result<(), MeasureError> {
+pub(crate) fn all_finite(samples: &[f64]) -> Result<()> {
     let bad = samples.iter().position(|x| x.is_nan() || x.abs() >= 1e140);
     bad.map_or(Ok(()), |index| Err(MeasureError::NotFinite(index, samples[index])))
 }
 
-/// A path in messages.
 pub(crate) fn file_name(file: &Path) -> String {
     file.display().to_string()
 }

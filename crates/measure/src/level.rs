@@ -1,6 +1,7 @@
 //! Shots cut out of a recording that comes in pieces, where it passes a level.
 
 use crate::MeasureError;
+use crate::error::Result;
 use crate::records::{Channel, Record, extremes};
 use crate::signal::median;
 use std::collections::VecDeque;
@@ -18,67 +19,23 @@ pub struct Level {
 /// Length of a shot in s by default: three times what a wave takes along forty balls of steel and
 /// back.
 const SHOT_S: f64 = 10e-3;
-/// Share of a shot that lies before it passes the level.
 const BEFORE: f64 = 0.1;
-/// Samples of a recording that its baseline is computed from.
 const BASELINE: usize = 4096;
 /// Samples tested together: enough to keep the processor busy without a branch each.
 const STRIDE: usize = 64;
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct LevelTrigger {
-    level: f64,
-    /// Whether signals fall through it rather than rise.
-    falling: bool,
-    /// How far the signal must have returned before it can fire again.
-    hysteresis: f64,
-    /// Samples of a shot before the one that fires, and in all.
-    before: usize,
-    length: usize,
-    /// Samples after one firing before which there is no other; at least the shot's own.
-    hold_off: u64,
-}
-
-impl LevelTrigger {
-    fn check(&self) -> Result<(), MeasureError> {
-        let (level, hysteresis) = (self.level, self.hysteresis);
-        let name = "level of the trigger";
-        MeasureError::require(level.is_finite(), name, level, "a finite number")?;
-        let name = "hysteresis of the trigger";
-        MeasureError::require(hysteresis >= 0.0, name, hysteresis, "0 or more")?;
-        let after = self.length as f64 - self.before as f64;
-        MeasureError::positive("number of samples of a shot after its trigger", after)
-    }
-
-    fn sign(self) -> f64 {
-        if self.falling { -1.0 } else { 1.0 }
-    }
-
-    fn fires(self, x: f64) -> bool {
-        self.sign() * x >= self.sign() * self.level
-    }
-
-    fn is_back(self, x: f64) -> bool {
-        self.sign() * x < self.sign() * self.level - self.hysteresis
-    }
-}
-
-/// The range of a shot in a recording.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Segment {
-    /// Numbers of its samples in the recording, from 0: fewer than the trigger's length at the
-    /// recording's end, and soon after its beginning or another shot.
-    samples: Range<u64>,
-    /// Number of the sample that fired.
-    trigger: u64,
-}
 
 /// Locates the shots of a recording that is fed piece by piece. Results do not depend on how the
 /// recording was divided; the caller keeps the samples from [`Cutter::needed_from`] on.
 #[derive(Debug)]
 struct Cutter {
-    trigger: LevelTrigger,
-    /// Number of the next sample, and end of the last shot.
+    /// The level, and how far the signal must have returned before it can fire again: both of a signal
+    /// that rises, to which `sign` turns one that falls.
+    level: f64,
+    hysteresis: f64,
+    sign: f64,
+    /// Samples of a shot before the one that fires, and in all; no other fires within as many.
+    before: u64,
+    length: u64,
     position: u64,
     free_from: u64,
     state: TriggerState,
@@ -93,33 +50,67 @@ enum TriggerState {
     Collecting(u64),
 }
 
+/// Samples of a shot, fewer at the recording's end and soon after its beginning or another shot, and
+/// the one that fired; by their numbers in the recording.
+type Segment = (Range<u64>, u64);
+
 impl Cutter {
-    fn new(trigger: LevelTrigger) -> Result<Self, MeasureError> {
-        trigger.check()?;
-        Ok(Self { trigger, position: 0, free_from: 0, state: TriggerState::Resting(0) })
+    fn new(level: f64, baseline: f64, length: usize) -> Result<Self> {
+        MeasureError::require(level.is_finite(), "level of the trigger", level, "a finite number")?;
+        MeasureError::positive("number of samples of a shot", length as f64)?;
+        let sign = if level < baseline { -1.0 } else { 1.0 };
+        Ok(Self {
+            level: sign * level,
+            hysteresis: 0.5 * (level - baseline).abs(),
+            sign,
+            before: (BEFORE * length as f64) as u64,
+            length: length as u64,
+            position: 0,
+            free_from: 0,
+            state: TriggerState::Resting(0),
+        })
     }
 
-    /// The shots that end in the next piece of the recording.
     fn feed(&mut self, piece: &[f64]) -> Vec<Segment> {
         let (mut left, mut shots) = (piece, Vec::new());
         while !left.is_empty() {
             let used = match self.state {
-                TriggerState::Collecting(fired) => self.collect(left.len(), fired, &mut shots),
-                TriggerState::Resting(until) => self.rest(left, until),
-                TriggerState::Armed => self.wait(left),
+                TriggerState::Collecting(fired) => {
+                    let end = fired + self.length - self.before;
+                    let used = usize::try_from(end - self.position).unwrap_or(usize::MAX);
+                    if used <= left.len() {
+                        shots.push((self.begins(fired)..end, fired));
+                        self.free_from = end;
+                        self.state = TriggerState::Resting(fired + self.length);
+                    }
+                    used.min(left.len())
+                }
+                TriggerState::Resting(until) => {
+                    let waiting = usize::try_from(until.saturating_sub(self.position));
+                    let skip = waiting.map_or(left.len(), |n| n.min(left.len()));
+                    let lowest = self.level - self.hysteresis;
+                    let back = first(&left[skip..], |x| self.sign * x < lowest);
+                    self.state = back.map_or(self.state, |_| TriggerState::Armed);
+                    back.map_or(left.len(), |at| skip + at)
+                }
+                TriggerState::Armed => {
+                    let fires = first(left, |x| self.sign * x >= self.level);
+                    let fired = |at: usize| TriggerState::Collecting(self.position + at as u64);
+                    self.state = fires.map_or(self.state, fired);
+                    fires.unwrap_or(left.len())
+                }
             };
-            left = left.get(used..).unwrap_or_default();
+            self.position += used as u64;
+            left = &left[used..];
         }
         shots
     }
 
-    /// The shot that the recording's end cut short.
     fn finish(&self) -> Option<Segment> {
-        let TriggerState::Collecting(trigger) = self.state else {
-            return None;
-        };
-        let samples = self.begins(trigger)..self.position;
-        Some(Segment { samples, trigger })
+        match self.state {
+            TriggerState::Collecting(fired) => Some((self.begins(fired)..self.position, fired)),
+            _ => None,
+        }
     }
 
     /// The first sample that a shot still to come may have.
@@ -131,50 +122,10 @@ impl Cutter {
     }
 
     fn begins(&self, fires: u64) -> u64 {
-        let before = self.trigger.before as u64;
-        fires.saturating_sub(before).max(self.free_from)
-    }
-
-    /// Continues the current shot; returns how many samples it took.
-    fn collect(&mut self, left: usize, trigger: u64, shots: &mut Vec<Segment>) -> usize {
-        let end = trigger + (self.trigger.length - self.trigger.before) as u64;
-        let wanted = end - self.position;
-        if wanted > left as u64 {
-            self.position += left as u64;
-            return left;
-        }
-        let samples = self.begins(trigger)..end;
-        shots.push(Segment { samples, trigger });
-        (self.position, self.free_from) = (end, end);
-        let until = trigger.saturating_add(self.trigger.hold_off);
-        self.state = TriggerState::Resting(end.max(until));
-        wanted as usize
-    }
-
-    fn rest(&mut self, left: &[f64], until: u64) -> usize {
-        let waiting = until.saturating_sub(self.position);
-        let skip = usize::try_from(waiting).map_or(left.len(), |n| n.min(left.len()));
-        let back = first(&left[skip..], |x| self.trigger.is_back(x));
-        if back.is_some() {
-            self.state = TriggerState::Armed;
-        }
-        let used = back.map_or(left.len(), |at| skip + at);
-        self.position += used as u64;
-        used
-    }
-
-    fn wait(&mut self, left: &[f64]) -> usize {
-        let fires = first(left, |x| self.trigger.fires(x));
-        let used = fires.unwrap_or(left.len());
-        self.position += used as u64;
-        if fires.is_some() {
-            self.state = TriggerState::Collecting(self.position);
-        }
-        used
+        fires.saturating_sub(self.before).max(self.free_from)
     }
 }
 
-/// First sample for which `test` holds.
 fn first(samples: &[f64], test: impl Fn(f64) -> bool) -> Option<usize> {
     for (number, chunk) in samples.chunks(STRIDE).enumerate() {
         // Without early exit inside, so that it runs many samples at a time.
@@ -192,26 +143,24 @@ pub(crate) struct AtLevel<I> {
     level: Level,
     shots: u64,
     under_way: Option<UnderWay>,
-    ready: VecDeque<Result<Record, MeasureError>>,
+    ready: VecDeque<Result<Record>>,
 }
 
-/// A recording that is being cut.
 struct UnderWay {
     head: Record,
     cutter: Cutter,
     /// Pieces that a shot still to come may need.
     stored: VecDeque<Record>,
-    /// Lowest and highest voltage until a shot was found.
     extremes_v: (f64, f64),
     found: bool,
 }
 
-impl<I: Iterator<Item = Result<Record, MeasureError>>> AtLevel<I> {
+impl<I: Iterator<Item = Result<Record>>> AtLevel<I> {
     pub(crate) fn new(pieces: I, level: Level) -> Self {
         Self { pieces, level, shots: 0, under_way: None, ready: VecDeque::new() }
     }
 
-    fn piece(&mut self, piece: Record) -> Result<(), MeasureError> {
+    fn piece(&mut self, piece: Record) -> Result<()> {
         if piece.first_sample == 0 {
             self.finish();
             self.under_way = Some(UnderWay::new(&piece, self.level)?);
@@ -242,8 +191,8 @@ impl<I: Iterator<Item = Result<Record, MeasureError>>> AtLevel<I> {
     }
 }
 
-impl<I: Iterator<Item = Result<Record, MeasureError>>> Iterator for AtLevel<I> {
-    type Item = Result<Record, MeasureError>;
+impl<I: Iterator<Item = Result<Record>>> Iterator for AtLevel<I> {
+    type Item = Result<Record>;
 
     fn next(&mut self) -> Option<Self::Item> {
         while self.ready.is_empty() {
@@ -261,7 +210,7 @@ impl<I: Iterator<Item = Result<Record, MeasureError>>> Iterator for AtLevel<I> {
 }
 
 impl UnderWay {
-    fn new(piece: &Record, level: Level) -> Result<Self, MeasureError> {
+    fn new(piece: &Record, level: Level) -> Result<Self> {
         let usual = (SHOT_S / piece.interval_s).round() as usize;
         let length = level.samples.unwrap_or(usual.max(1));
         let channel = piece.channels.first();
@@ -269,14 +218,7 @@ impl UnderWay {
         let stride = volts.len().div_ceil(BASELINE).max(1);
         let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
         let baseline_v = median(&some).unwrap_or(0.0);
-        let cutter = Cutter::new(LevelTrigger {
-            level: level.volts,
-            falling: level.volts < baseline_v,
-            hysteresis: 0.5 * (level.volts - baseline_v).abs(),
-            before: (BEFORE * length as f64) as usize,
-            length,
-            hold_off: length as u64,
-        });
+        let cutter = Cutter::new(level.volts, baseline_v, length);
         Ok(Self {
             head: piece.without_samples(),
             cutter: cutter.map_err(|cause| {
@@ -302,14 +244,9 @@ impl UnderWay {
     }
 
     /// The shots that were cut out, by their numbers in the file.
-    fn shots(
-        &mut self,
-        cut: &[Segment],
-        number: &mut u64,
-        ready: &mut VecDeque<Result<Record, MeasureError>>,
-    ) {
+    fn shots(&mut self, cut: &[Segment], number: &mut u64, ready: &mut VecDeque<Result<Record>>) {
         self.found |= !cut.is_empty();
-        for Segment { samples, trigger } in cut {
+        for (samples, trigger) in cut {
             *number += 1;
             let fired_s = *trigger as f64 * self.head.interval_s;
             let mut shot = Record {

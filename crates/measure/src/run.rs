@@ -321,7 +321,6 @@ impl Measurement {
         }
     }
 
-    /// What was repaired in samples, and in which files.
     fn note_repairs(&mut self) {
         let of = |shot: &Shot| {
             let counts = shot.doubts.iter().map(|doubt| match doubt {

@@ -18,7 +18,6 @@ const ABOVE_NOISE: f64 = 4.0;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Content {
-    /// One shot.
     One,
     /// Several, that quiet keeps apart: first sample and end of each.
     Plain(Vec<(usize, usize)>),
@@ -36,7 +35,6 @@ struct Burst {
     pulses: usize,
 }
 
-/// How many shots a record of these channels holds.
 pub(crate) fn content(channels: &[Channel]) -> Content {
     let samples = channels.first().map_or(0, |one| one.volts.len());
     let mut shares = vec![0.0_f64; samples.div_ceil(BLOCK)];

@@ -9,7 +9,6 @@ use std::iter::once;
 /// Titles with the cells of one line; of a line of nothing only its titles count.
 type Line = Vec<(String, String)>;
 
-/// A number; an empty cell where there is none.
 fn number(title: &str, value: Option<f64>) -> (String, String) {
     let finite = value.filter(|value| value.is_finite());
     let cell = finite.map_or(String::new(), |value| format!("{value:e}"));
@@ -30,7 +29,6 @@ fn estimate(title: &str, error: &str, of: Option<Estimate>) -> [(String, String)
     [number(title, of.map(|of| of.value)), number(error, of.map(|of| of.sigma))]
 }
 
-/// The lines of a table, with that of its titles.
 fn table(titles: Line, lines: impl Iterator<Item = Line>) -> impl Iterator<Item = String> {
     let joined = |cells: Vec<String>| cells.join(",") + "\n";
     let cells = move |line: Line| joined(line.into_iter().map(|cell| cell.1).collect());

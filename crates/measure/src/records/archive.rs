@@ -1,6 +1,6 @@
 //! Arrays of numbers by name in one file: read row by row, inflated first if they are compressed.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays::{Arrays, SampleTable};
 use crate::records::options::{ReadOptions, no_channel};
 use crate::records::read::Raw;
@@ -24,7 +24,6 @@ pub(crate) enum Packing {
     Zlib,
 }
 
-/// Bytes of a file that hold one array and its header.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stretch {
     pub start: u64,
@@ -45,8 +44,7 @@ impl Stretch {
         })
     }
 
-    /// The first bytes, inflated, at most so many.
-    pub(super) fn beginning(&self, file: &Path, most: usize) -> Result<Vec<u8>, MeasureError> {
+    pub(super) fn beginning(&self, file: &Path, most: usize) -> Result<Vec<u8>> {
         let mut begins = Vec::new();
         let read = self.bytes(file).and_then(|it| it.take(most as u64).read_to_end(&mut begins));
         read.map_err(|cause| MeasureError::reading(file, cause))?;
@@ -70,11 +68,11 @@ pub(crate) struct StoredArray {
 /// Arrays by name, or why one is not read; a single one may have none.
 pub(crate) struct Archive {
     pub file: PathBuf,
-    pub arrays: IndexMap<String, Result<StoredArray, MeasureError>>,
+    pub arrays: IndexMap<String, Result<StoredArray>>,
 }
 
 impl Archive {
-    fn array(&self, name: &str) -> Result<&StoredArray, MeasureError> {
+    fn array(&self, name: &str) -> Result<&StoredArray> {
         match self.arrays.get(name) {
             Some(array) => array.as_ref().map_err(Clone::clone),
             None => Err(no_channel(&self.file, name, &self.names())),
@@ -91,20 +89,15 @@ impl Arrays for Archive {
         self.arrays.keys().cloned().collect()
     }
 
-    fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError> {
+    fn shape(&self, name: &str) -> Result<Vec<usize>> {
         self.array(name).map(|array| array.shape.clone())
     }
 
-    fn values(&self, name: &str) -> Result<Vec<f64>, MeasureError> {
+    fn values(&self, name: &str) -> Result<Vec<f64>> {
         self.array(name)?.values(&self.file)
     }
 
-    fn records(
-        &self,
-        name: &str,
-        interval_s: f64,
-        options: &ReadOptions,
-    ) -> Result<Raw, MeasureError> {
+    fn records(&self, name: &str, interval_s: f64, options: &ReadOptions) -> Result<Raw> {
         let part = Some(name.to_owned()).filter(|name| !name.is_empty());
         let array = self.array(name)?;
         let table = SampleTable::new(&self.file, part, &array.shape, interval_s, options)?;
@@ -119,7 +112,7 @@ impl Arrays for Archive {
 
 impl StoredArray {
     /// The file that holds the numbers, inflated if need be, and where they begin in it.
-    fn numbers(&self, file: &Path) -> Result<(File, u64), MeasureError> {
+    fn numbers(&self, file: &Path) -> Result<(File, u64)> {
         let reading = |cause| MeasureError::reading(file, cause);
         let end = self.start.saturating_add(self.length);
         if self.within.packing == Packing::Plain {
@@ -141,7 +134,7 @@ impl StoredArray {
     }
 
     /// All numbers of a small array, in the order in which they are stored.
-    fn values(&self, file: &Path) -> Result<Vec<f64>, MeasureError> {
+    fn values(&self, file: &Path) -> Result<Vec<f64>> {
         let wide = self.number.width();
         let count = self.length / wide as u64;
         if count > MOST_SAMPLES as u64 {
@@ -161,12 +154,7 @@ impl StoredArray {
         (there < self.length).then(|| MeasureError::truncated(file_name(file), detail))
     }
 
-    fn records(
-        &self,
-        file: &Path,
-        table: SampleTable,
-        options: &ReadOptions,
-    ) -> Result<Raw, MeasureError> {
+    fn records(&self, file: &Path, table: SampleTable, options: &ReadOptions) -> Result<Raw> {
         let strides = self.strides();
         let stride = |axis: Option<usize>| axis.map_or(0, |axis| strides[axis]);
         let (frames, wide) = (table.head.frames, self.number.width());
@@ -204,7 +192,6 @@ impl StoredArray {
         Ok(table.head.records(options.parts, stored))
     }
 
-    /// Bytes from a number to the next along each axis.
     fn strides(&self) -> Vec<usize> {
         let mut strides = vec![0; self.shape.len()];
         let mut stride = self.number.width();

@@ -1,6 +1,6 @@
 //! Arrays of numbers, alone or several by name in one file: samples, times, rates and speeds.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{
     MOST_CHANNELS, MOST_COLUMNS, Parts, ReadOptions, Rows, ambiguous, chosen, numbered,
@@ -20,12 +20,10 @@ pub(crate) const RATES: &[&str] =
 /// Names of arrays of times without a unit, and in s.
 const TIMES: &[&str] = &["t", "time", "times"];
 const TIMES_S: &[&str] = &["time_s", "t_s"];
-/// Names of arrays of speeds in m/s, one a shot.
 const SPEEDS: &[&str] = &["speed", "speeds", "speed_m_s", "speeds_m_s", "v0"];
 /// Names, before a number, of arrays that are shots.
 const SHOTS: &[&str] = &["arr", "shot", "record", "rec", "run", "segment", "seg", "event", "trial"];
 
-/// Samples that show whether numbers are times.
 pub(crate) const TIMES_SEEN: usize = 4096;
 
 /// Fewer numbers may rise evenly by chance.
@@ -36,7 +34,6 @@ const LEAST_TIMES: usize = 32;
 const EVEN: f64 = 1e-3;
 const ROUNDED: f64 = 0.4;
 
-/// Axes by their meaning, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Axes {
     pub shots: Option<usize>,
@@ -61,7 +58,6 @@ impl Axes {
     }
 }
 
-/// An array of samples with the meaning of its axes.
 pub(crate) struct SampleTable {
     pub axes: Axes,
     pub chosen: Vec<usize>,
@@ -75,7 +71,7 @@ impl SampleTable {
         shape: &[usize],
         interval_s: f64,
         options: &ReadOptions,
-    ) -> Result<Self, MeasureError> {
+    ) -> Result<Self> {
         if shape.contains(&0) {
             return Err(MeasureError::empty(file_name(file)));
         }
@@ -137,19 +133,12 @@ pub(crate) trait Arrays {
 
     fn names(&self) -> Vec<String>;
 
-    fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError>;
+    fn shape(&self, name: &str) -> Result<Vec<usize>>;
 
-    /// All numbers of a small array.
-    fn values(&self, name: &str) -> Result<Vec<f64>, MeasureError>;
+    fn values(&self, name: &str) -> Result<Vec<f64>>;
 
-    fn records(
-        &self,
-        name: &str,
-        interval_s: f64,
-        options: &ReadOptions,
-    ) -> Result<Raw, MeasureError>;
+    fn records(&self, name: &str, interval_s: f64, options: &ReadOptions) -> Result<Raw>;
 
-    /// Sampling interval in s that the file states beside its arrays.
     fn stated_s(&self) -> Option<f64> {
         None
     }
@@ -164,7 +153,7 @@ pub(crate) trait Arrays {
 ///
 /// One array is shots or channels by its axes. Several are shots if they are called so, else
 /// channels.
-pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw> {
     let names = arrays.names();
     let is = |known: &[&str], name: &str| known.contains(&&*last(name).to_lowercase());
     let of = |known: &[&str]| names.iter().find(|name| is(known, name));
@@ -247,12 +236,11 @@ fn time_column(
     Some((others, step))
 }
 
-/// The last part of a path.
 pub(crate) fn last(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
 }
 
-fn rows(arrays: &dyn Arrays, name: &str, options: &ReadOptions) -> Result<usize, MeasureError> {
+fn rows(arrays: &dyn Arrays, name: &str, options: &ReadOptions) -> Result<usize> {
     let shape = arrays.shape(name)?;
     let axes = Axes::new(&shape, options.rows_of(&shape));
     let rows = axes.and_then(|axes| shape.get(axes.shots?));
@@ -265,7 +253,7 @@ fn of_samples(
     samples: Vec<String>,
     interval_s: f64,
     options: &ReadOptions,
-) -> Result<(Raw, usize), MeasureError> {
+) -> Result<(Raw, usize)> {
     let file = arrays.file();
     // Columns of an array that is itself chosen are not chosen from.
     let free = ReadOptions { channels: Vec::new(), ..options.clone() };
@@ -279,10 +267,8 @@ fn of_samples(
     }
     if let Some(groups) = shot_groups(&samples) {
         let recordings = groups.len();
-        return Ok((
-            group_by_group(arrays.clone(), groups, interval_s, options.clone()),
-            recordings,
-        ));
+        let all = group_by_group(arrays.clone(), groups, interval_s, options.clone());
+        return Ok((all, recordings));
     }
     let are_shots = samples.iter().all(|name| is_shot(last(name)));
     if are_shots && options.rows != Rows::Channels && options.channels.is_empty() {
@@ -290,10 +276,10 @@ fn of_samples(
         let recordings = match options.parts {
             // Shots of equal length come one by one, whatever array they are of.
             Parts::Shots(_) => 0,
-            _ => each.sum::<Result<usize, MeasureError>>()?,
+            _ => each.sum::<Result<usize>>()?,
         };
-        let all = one_by_one(arrays.clone(), samples, interval_s, free);
-        return Ok((all, recordings));
+        let groups = samples.into_iter().map(|name| vec![name]).collect();
+        return Ok((group_by_group(arrays.clone(), groups, interval_s, free), recordings));
     }
     let chosen = chosen(file, &samples, options)?;
     let chosen: Vec<&String> = chosen.iter().filter_map(|i| samples.get(*i)).collect();
@@ -310,7 +296,6 @@ fn of_samples(
     Ok((records, recordings))
 }
 
-/// Whether a name is that of a shot and its number.
 fn is_shot(name: &str) -> bool {
     let (stem, number) = numbered_name(name);
     let word = stem.trim_end_matches(['_', '-', ' ']).to_lowercase();
@@ -340,20 +325,17 @@ fn shot_groups(samples: &[String]) -> Option<Vec<Vec<String>>> {
     Some(groups.iter().map(|(group, own)| path(group, own)).collect())
 }
 
-/// The records of one group after the other.
+/// The records of one group after the other, numbered.
 fn group_by_group(
     arrays: Rc<dyn Arrays>,
     groups: Vec<Vec<String>>,
     interval_s: f64,
     options: ReadOptions,
 ) -> Raw {
-    numbered_records(groups.into_iter().flat_map(move |group| {
+    let records = groups.into_iter().flat_map(move |group| {
         let records = of_samples(&arrays, group, interval_s, &options).map(|opened| opened.0);
         records.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
-    }))
-}
-
-fn numbered_records(records: impl Iterator<Item = Result<Record, MeasureError>> + 'static) -> Raw {
+    });
     Box::new((1..).zip(records).map(|(number, record)| {
         let mut record = record?;
         record.shot = Some(number);
@@ -367,12 +349,12 @@ fn side_by_side(
     names: &[&String],
     interval_s: f64,
     options: &ReadOptions,
-) -> Result<Raw, MeasureError> {
+) -> Result<Raw> {
     let open = |name: &&String| {
         let records = arrays.records(name, interval_s, options)?;
         Ok((name.to_string(), records))
     };
-    let opened: Result<Vec<(String, Raw)>, MeasureError> = names.iter().map(open).collect();
+    let opened: Result<Vec<(String, Raw)>> = names.iter().map(open).collect();
     let (mut opened, file) = (opened?, arrays.file().to_owned());
     Ok(Box::new(std::iter::from_fn(move || {
         let next = opened.iter_mut();
@@ -382,11 +364,7 @@ fn side_by_side(
     })))
 }
 
-/// One shot of channels that came one by one.
-fn joined(
-    file: &Path,
-    channels: Vec<(String, Option<Result<Record, MeasureError>>)>,
-) -> Result<Record, MeasureError> {
+fn joined(file: &Path, channels: Vec<(String, Option<Result<Record>>)>) -> Result<Record> {
     let unlike = |detail: &str| MeasureError::malformed(file, "arrays", detail);
     let mut joined: Option<Record> = None;
     for (name, record) in channels {
@@ -400,19 +378,6 @@ fn joined(
         joined.get_or_insert(record).channels.push(channel);
     }
     joined.ok_or_else(|| unlike("without channels"))
-}
-
-/// The records of one array after the other.
-fn one_by_one(
-    arrays: Rc<dyn Arrays>,
-    samples: Vec<String>,
-    interval_s: f64,
-    options: ReadOptions,
-) -> Raw {
-    numbered_records(samples.into_iter().flat_map(move |name| {
-        let opened = arrays.records(&name, interval_s, &options);
-        opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
-    }))
 }
 
 /// Assigns recordings the speeds of the file in order; pieces of one have the same, and a single

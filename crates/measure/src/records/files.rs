@@ -31,10 +31,8 @@ const ATTEMPTS: usize = 8;
 /// Variable that, if set, allows writers that lock nothing.
 const LOCKING: &str = "HDF5_USE_FILE_LOCKING";
 
-/// Most bytes of a table as text: 16 MiB.
 const MOST_TEXT: u64 = 1 << 24;
 
-/// Most bytes that are read from a pipe or device: 1 GiB.
 const MOST_PIPED: u64 = 1 << 30;
 
 const STDIN: &str = "-";
@@ -197,7 +195,6 @@ fn removed(part: &Path) -> bool {
     is_file && open.is_ok_and(|open| open.try_lock().is_ok() && fs::remove_file(part).is_ok())
 }
 
-/// Copies of pipes and devices that this program has made.
 struct Copies {
     /// Those that were peeked at and not read yet, by the path of their source.
     unread: BTreeMap<PathBuf, PathBuf>,
@@ -268,7 +265,6 @@ fn opened(path: &Path) -> io::Result<Box<dyn Read>> {
     })
 }
 
-/// Whether a path can be read only once.
 fn is_stream(path: &Path) -> io::Result<bool> {
     if path == Path::new(STDIN) {
         return Ok(true);

@@ -1,6 +1,6 @@
 //! HDF5: datasets of any program, and tables of results.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, SampleTable};
 use crate::records::files::{exclusive, persist};
 use crate::records::options::ReadOptions;
@@ -31,7 +31,7 @@ const UNITS: &[(&str, &str)] =
     &[("_m_s", "m s-1"), ("_s", "s"), ("_m", "m"), ("_n", "N"), ("_v", "V"), ("_j", "J")];
 
 /// Opens a series of a virtual campaign, or the datasets of another program.
-pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let open =
         H5File::open(file).map_err(|e| MeasureError::malformed(file, "HDF5", damaged(&e)))?;
     if series::is_series(&open) {
@@ -135,7 +135,6 @@ fn dataset_of(open: &H5File, name: &str, is_there: bool) -> Result<H5Dataset, Hd
     Ok(dataset)
 }
 
-/// All numbers of a dataset of so many.
 pub(crate) fn column<T: H5Type>(
     open: &H5File,
     name: &str,
@@ -151,7 +150,6 @@ pub(crate) fn column<T: H5Type>(
     }
 }
 
-/// A number that is an attribute of a dataset.
 pub(crate) fn attribute(of: &H5Dataset, name: &str) -> Result<f64, Hdf5Error> {
     let attribute = of.attr(name)?;
     let value = match attribute.read_numeric_as::<f64>() {
@@ -183,7 +181,6 @@ pub(crate) fn unit(name: &str) -> &'static str {
     found.map_or("1", |ending| ending.1)
 }
 
-/// An open file and the paths of its datasets of numbers.
 struct Datasets {
     file: PathBuf,
     open: H5File,
@@ -192,7 +189,7 @@ struct Datasets {
 }
 
 impl Datasets {
-    fn dataset(&self, name: &str) -> Result<H5Dataset, MeasureError> {
+    fn dataset(&self, name: &str) -> Result<H5Dataset> {
         let found = dataset_of(&self.open, name, self.names.contains(name));
         found.map_err(|error| refused(&self.file, name, &error))
     }
@@ -220,21 +217,16 @@ impl Arrays for Datasets {
         self.names.iter().cloned().collect()
     }
 
-    fn shape(&self, name: &str) -> Result<Vec<usize>, MeasureError> {
+    fn shape(&self, name: &str) -> Result<Vec<usize>> {
         self.dataset(name).map(|dataset| self.axes(dataset.shape()))
     }
 
-    fn values(&self, name: &str) -> Result<Vec<f64>, MeasureError> {
+    fn values(&self, name: &str) -> Result<Vec<f64>> {
         let values = self.dataset(name)?.read_numeric_as::<f64>();
         values.map_err(|error| refused(&self.file, name, &error))
     }
 
-    fn records(
-        &self,
-        name: &str,
-        interval_s: f64,
-        options: &ReadOptions,
-    ) -> Result<Raw, MeasureError> {
+    fn records(&self, name: &str, interval_s: f64, options: &ReadOptions) -> Result<Raw> {
         let dataset = self.dataset(name)?;
         let shape = self.axes(dataset.shape());
         let part = Some(name.to_owned());
@@ -266,7 +258,6 @@ impl Arrays for Datasets {
     }
 }
 
-/// A dataset, read shot by shot or piece by piece.
 struct Slices {
     file: PathBuf,
     name: String,
@@ -277,12 +268,7 @@ struct Slices {
 }
 
 impl SampleSource for Slices {
-    fn samples(
-        &mut self,
-        row: usize,
-        from: usize,
-        count: usize,
-    ) -> Result<Vec<Samples>, MeasureError> {
+    fn samples(&mut self, row: usize, from: usize, count: usize) -> Result<Vec<Samples>> {
         let one = |channel: &usize| self.channel(row, *channel, (from, count));
         let taken: Result<_, Hdf5Error> = self.chosen.iter().map(one).collect();
         taken.map_err(|error| refused(&self.file, &self.name, &error))
@@ -336,7 +322,7 @@ impl ColumnFile {
     ///
     /// # Errors
     /// [`MeasureError::Unwritable`].
-    pub fn write(&self, path: &Path) -> Result<(), MeasureError> {
+    pub fn write(&self, path: &Path) -> Result<()> {
         let failed =
             |error: &dyn ToString| MeasureError::Unwritable(file_name(path), error.to_string());
         let part = exclusive(path).map_err(|error| failed(&error))?;
@@ -366,7 +352,7 @@ impl ColumnFile {
     ///
     /// # Errors
     /// [`MeasureError::Format`] with what is damaged or missing.
-    pub fn read(path: &Path, columns: &[&str]) -> Result<Self, MeasureError> {
+    pub fn read(path: &Path, columns: &[&str]) -> Result<Self> {
         let found = || {
             let open = H5File::open(path)?;
             let about = dataset(&open, ABOUT)?.read_raw::<u8>()?;

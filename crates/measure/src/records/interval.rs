@@ -1,6 +1,6 @@
 //! The sampling interval, from what the file and the options state.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::options::ReadOptions;
 use std::path::Path;
 
@@ -24,7 +24,6 @@ pub(crate) struct FromTimes {
     pub even_to_s: f64,
 }
 
-/// An interval between samples with its standard error.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SampleInterval {
     pub s: f64,
@@ -39,11 +38,7 @@ impl SampleInterval {
 }
 
 /// Sampling interval in s, from what the file states and the options say.
-pub(crate) fn interval_s(
-    file: &Path,
-    stated_s: Option<f64>,
-    options: &ReadOptions,
-) -> Result<f64, MeasureError> {
+pub(crate) fn interval_s(file: &Path, stated_s: Option<f64>, options: &ReadOptions) -> Result<f64> {
     let given_s = options.rate_hz.map(f64::recip);
     let refused = |detail: String| MeasureError::Rate(file_name(file), detail);
     let interval_s = match (stated_s, given_s) {
@@ -73,7 +68,7 @@ pub(crate) fn from_times(
     times: &FromTimes,
     stated_s: Option<f64>,
     options: &ReadOptions,
-) -> Result<SampleInterval, MeasureError> {
+) -> Result<SampleInterval> {
     let middle_s = 0.5 * (times.least_s + times.most_s);
     if let Some(given_s) = options.rate_hz.map(f64::recip) {
         return match times.allow(given_s) {
@@ -102,7 +97,6 @@ pub(crate) fn from_times(
 }
 
 impl FromTimes {
-    /// Whether an interval is within the range, but for rounding.
     fn allow(&self, interval_s: f64) -> bool {
         let slack = 1e-9 * interval_s;
         (self.least_s - slack..=self.most_s + slack).contains(&interval_s)
@@ -119,7 +113,6 @@ impl FromTimes {
     }
 }
 
-/// A number with its first digit and so many more.
 fn to_digits(value: f64, more: usize) -> f64 {
     format!("{value:.more$e}").parse().unwrap_or(f64::NAN)
 }
@@ -158,7 +151,7 @@ pub(crate) fn seconds_assumed(
 }
 
 /// The option's interval, which is exact where an export rounds.
-fn agreed(file: &Path, stated_s: f64, given_s: f64) -> Result<f64, MeasureError> {
+fn agreed(file: &Path, stated_s: f64, given_s: f64) -> Result<f64> {
     if (stated_s - given_s).abs() <= SAME_RATE * given_s {
         return Ok(given_s);
     }

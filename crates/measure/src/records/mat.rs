@@ -1,6 +1,6 @@
 //! MATLAB's files of the versions 4 and 5: headers here, numbers raw. Version 7.3 is HDF5.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::archive::{Archive, Packing, StoredArray, Stretch};
 use crate::records::arrays;
 use crate::records::options::ReadOptions;
@@ -13,7 +13,6 @@ use std::rc::Rc;
 /// Bytes of version 5 before its elements, and of the tag of one.
 const PREAMBLE: u64 = 128;
 const TAG: u64 = 8;
-/// Types of elements.
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 /// Classes of arrays of numbers, from double to the unsigned integer of 64 bits, and the flag of
@@ -23,7 +22,6 @@ const COMPLEX: u32 = 1 << 11;
 
 /// Most bytes before the first number of an array: flags, axes and a name.
 const MOST_HEADER: usize = 4096;
-/// Most arrays of a file.
 const MOST_ARRAYS: usize = 100_000;
 
 /// Whether a file that begins so is of version 4 or 5.
@@ -31,7 +29,6 @@ pub(crate) fn is_mat(begins: &[u8]) -> bool {
     is_big_endian(begins).is_some() || Header4::parse(begins).is_some()
 }
 
-/// The byte order of version 5.
 fn is_big_endian(begins: &[u8]) -> Option<bool> {
     match begins.get(124..128)? {
         [0, 1, b'I', b'M'] => Some(false),
@@ -40,7 +37,7 @@ fn is_big_endian(begins: &[u8]) -> Option<bool> {
     }
 }
 
-pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let reading = |cause| MeasureError::reading(file, cause);
     let length = file.metadata().map_err(reading)?.len();
     let begins = beginning(file, 0, length, Packing::Plain)?;
@@ -65,12 +62,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureErr
     arrays::open(Rc::new(Archive { file: file.to_owned(), arrays }), options)
 }
 
-fn beginning(
-    file: &Path,
-    start: u64,
-    size: u64,
-    packing: Packing,
-) -> Result<Vec<u8>, MeasureError> {
+fn beginning(file: &Path, start: u64, size: u64, packing: Packing) -> Result<Vec<u8>> {
     Stretch { start, size, packing }.beginning(file, MOST_HEADER)
 }
 
@@ -78,7 +70,7 @@ fn beginning(
 /// `None` of what is cut short or no element.
 type Next = Option<(u64, Option<(String, StoredArray)>)>;
 
-fn element(file: &Path, (at, length): (u64, u64), big_endian: bool) -> Result<Next, MeasureError> {
+fn element(file: &Path, (at, length): (u64, u64), big_endian: bool) -> Result<Next> {
     let tag = beginning(file, at, TAG, Packing::Plain)?;
     let mut bytes = HeaderBytes { left: &tag, big_endian };
     let (Some(kind), Some(size)) = (bytes.u32(), bytes.u32()) else {
@@ -146,7 +138,6 @@ fn sub_tag(bytes: &mut HeaderBytes<'_>) -> Option<(u32, usize, bool)> {
     })
 }
 
-/// A whole part of an element: its type and bytes.
 fn part<'a>(bytes: &mut HeaderBytes<'a>) -> Option<(u32, &'a [u8])> {
     let before = bytes.left;
     let (kind, size, is_small) = sub_tag(bytes)?;
@@ -157,7 +148,6 @@ fn part<'a>(bytes: &mut HeaderBytes<'a>) -> Option<(u32, &'a [u8])> {
     Some((kind, &padded[..size]))
 }
 
-/// What stands before each array of version 4.
 struct Header4 {
     number: StoredNumber,
     is_numbers: bool,
@@ -167,7 +157,6 @@ struct Header4 {
 
 impl Header4 {
     const BYTES: usize = 20;
-    /// Most letters of a name.
     const MOST: usize = 64;
 
     fn parse(begins: &[u8]) -> Option<Self> {
@@ -202,7 +191,7 @@ impl Header4 {
     }
 }
 
-fn variable(file: &Path, (at, length): (u64, u64)) -> Result<Next, MeasureError> {
+fn variable(file: &Path, (at, length): (u64, u64)) -> Result<Next> {
     let header = beginning(file, at, length - at, Packing::Plain)?;
     let Some(Header4 { number, is_numbers, shape, name }) = Header4::parse(&header) else {
         return Ok(None);

@@ -1,6 +1,6 @@
 //! NumPy arrays, one in an NPY or several in an NPZ: headers by npyz, numbers raw.
 
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::records::archive::{Archive, Packing, StoredArray, Stretch};
 use crate::records::arrays;
 use crate::records::options::ReadOptions;
@@ -18,13 +18,13 @@ use zip::{CompressionMethod, ZipArchive};
 const MOST_HEADER: usize = 10_000;
 const MOST_NESTED: usize = 16;
 
-pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let whole = Stretch { start: 0, size: u64::MAX, packing: Packing::Plain };
     let arrays = IndexMap::from([(String::new(), Ok(array(file, whole)?))]);
     arrays::open(Rc::new(Archive { file: file.to_owned(), arrays }), options)
 }
 
-pub(crate) fn open_npz(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open_npz(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let refused = |detail: String| MeasureError::malformed(file, "NPZ", detail);
     let damaged = |error: zip::result::ZipError| refused(format!("cut short or damaged ({error})"));
     let opened = File::open(file).map_err(|cause| MeasureError::reading(file, cause))?;
@@ -52,8 +52,7 @@ pub(crate) fn open_npz(file: &Path, options: &ReadOptions) -> Result<Raw, Measur
     arrays::open(Rc::new(Archive { file: file.to_owned(), arrays }), options)
 }
 
-/// An array by its header.
-fn array(file: &Path, within: Stretch) -> Result<StoredArray, MeasureError> {
+fn array(file: &Path, within: Stretch) -> Result<StoredArray> {
     let malformed = |detail: String| MeasureError::malformed(file, "a NumPy array", detail);
     let mut begins = within.beginning(file, MOST_HEADER)?;
     let start = header_length(&begins).unwrap_or(begins.len());
@@ -112,7 +111,6 @@ fn nested(header: &[u8]) -> usize {
     most
 }
 
-/// How items are stored, or why they are not read.
 fn number(dtype: &DType) -> Result<StoredNumber, String> {
     let no_number =
         || format!("its items are {}, not real numbers; save a plain array", dtype.descr());

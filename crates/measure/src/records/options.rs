@@ -1,6 +1,6 @@
 //! Options of reading, and the choice of channels.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays::last;
 use std::path::Path;
 
@@ -22,7 +22,6 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// Meaning of the rows of an array, where its shape decides.
     pub(crate) fn rows_of(&self, shape: &[usize]) -> Rows {
         match (self.rows, shape) {
             (Rows::Auto, &[rows, columns])
@@ -34,7 +33,6 @@ impl ReadOptions {
         }
     }
 
-    /// The rate that counts whatever a file states.
     pub(crate) fn trusted_rate_hz(&self) -> Option<f64> {
         self.rate_hz.filter(|_| self.trust_rate)
     }
@@ -87,12 +85,7 @@ pub(crate) const MOST_CHANNELS: usize = 2;
 
 const SHOWN: usize = 12;
 
-/// Indices of the chosen channels among those of a file.
-pub(crate) fn chosen(
-    file: &Path,
-    names: &[String],
-    options: &ReadOptions,
-) -> Result<Vec<usize>, MeasureError> {
+pub(crate) fn chosen(file: &Path, names: &[String], options: &ReadOptions) -> Result<Vec<usize>> {
     if !options.channels.is_empty() {
         let one = |wanted: &String| {
             position(names, wanted).ok_or_else(|| no_channel(file, wanted, names))

@@ -1,6 +1,6 @@
 //! Records of a file of any format, one by one.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 #[cfg(feature = "hdf5")]
 use crate::records::hdf5::open as open_hdf5;
 use crate::records::options::{Parts, ReadOptions};
@@ -12,12 +12,11 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-pub(crate) type Raw = Box<dyn Iterator<Item = Result<Record, MeasureError>>>;
+pub(crate) type Raw = Box<dyn Iterator<Item = Result<Record>>>;
 
 /// Most records of a file: an array of more rows is one of something else.
 const MOST_RECORDS: usize = 100_000;
 
-/// Bytes that show the format of a file.
 const PROBE: u64 = 4096;
 
 /// Most samples of a channel that are not finite, as a share.
@@ -25,7 +24,7 @@ const MOST_FILLED: f64 = 0.01;
 
 /// Name of a format, whether a file that begins so has it, its extensions, and its reader.
 type Format = (&'static str, fn(&[u8]) -> bool, &'static [&'static str], Open);
-type Open = fn(&Path, &ReadOptions) -> Result<Raw, MeasureError>;
+type Open = fn(&Path, &ReadOptions) -> Result<Raw>;
 
 /// All formats; text, which no bytes begin, last.
 #[rustfmt::skip]
@@ -64,7 +63,7 @@ pub fn is_recording(file: &Path) -> bool {
 }
 
 #[cfg(not(feature = "hdf5"))]
-fn open_hdf5(file: &Path, _options: &ReadOptions) -> Result<Raw, MeasureError> {
+fn open_hdf5(file: &Path, _options: &ReadOptions) -> Result<Raw> {
     let detail = "HDF5, which this build does not read: compile it with the feature `hdf5`";
     Err(MeasureError::malformed(file, "a recording", detail))
 }
@@ -91,7 +90,7 @@ pub fn read(file: &Path, options: &ReadOptions) -> Records {
 }
 
 impl Iterator for Records {
-    type Item = Result<Record, MeasureError>;
+    type Item = Result<Record>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let record = self.records.next()?;
@@ -132,7 +131,7 @@ impl Records {
     /// Rejects records without samples, with channels of different lengths, with many samples
     /// that are not finite, with channels that never change unless they are pieces, and shots
     /// that are not as long as the first. Fills single samples that are not finite.
-    fn checked(&mut self, mut record: Record) -> Result<Record, MeasureError> {
+    fn checked(&mut self, mut record: Record) -> Result<Record> {
         let length = record.len();
         if length == 0 {
             return Err(MeasureError::empty(record.source));
@@ -168,7 +167,6 @@ impl Records {
     }
 }
 
-/// The note which of two channels is taken for which.
 fn two_channels(record: &Record) -> Option<String> {
     let [sensor, wall] = record.channels.as_slice() else {
         return None;
@@ -184,7 +182,7 @@ fn two_channels(record: &Record) -> Option<String> {
 }
 
 /// Fills the samples that are not finite, and returns their runs.
-fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>, MeasureError> {
+fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>> {
     let volts = &mut channel.volts;
     let bad = || (0..volts.len()).filter(|at| !volts[*at].is_finite());
     let Some(first) = bad().next() else {
@@ -223,7 +221,7 @@ fn fill(volts: &mut [f64], gap: &Range<usize>, (low, high): (f64, f64)) {
     }
 }
 
-fn reject_constant(source: &str, channel: &Channel) -> Result<(), MeasureError> {
+fn reject_constant(source: &str, channel: &Channel) -> Result<()> {
     let Channel { name, volts, .. } = channel;
     match volts.first() {
         Some(value) if volts.iter().all(|volt| volt == value) => {
@@ -263,7 +261,7 @@ fn divided(records: Raw, most: usize, parts: Parts) -> Raw {
 }
 
 /// The reader of a file by its content, unless its extension promises another.
-fn format_of(file: &Path) -> Result<Open, MeasureError> {
+fn format_of(file: &Path) -> Result<Open> {
     let mut bytes = Vec::new();
     let opened = File::open(file);
     let read = opened.and_then(|file| file.take(PROBE).read_to_end(&mut bytes));
@@ -294,7 +292,6 @@ fn extension(file: &Path) -> String {
     file.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
-/// Why a binary file of an instrument is not read.
 fn vendor(bytes: &[u8], extension: &str) -> Option<String> {
     let is_such = |(from, holds, ending, _): &&(usize, &[u8], &str, &str)| match holds.len() {
         0 => *ending == extension,

@@ -77,7 +77,6 @@ impl Record {
         }
     }
 
-    /// Everything but channels and gaps.
     pub(crate) fn without_samples(&self) -> Self {
         Self {
             source: self.source.clone(),
@@ -131,7 +130,6 @@ pub struct Channel {
 /// Channels of a series whose sensors have one each.
 pub(crate) const SEPARATE: &[&str] = &["sensor", "wall"];
 
-/// Numbers in V, and the converter's range.
 pub(crate) type Samples = (Vec<f64>, Option<(f64, f64)>);
 
 /// Lowest and highest number; +∞ and −∞ of none.

@@ -5,7 +5,7 @@ mod write;
 
 pub use write::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow};
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::hdf5::{attribute, column, damaged, dataset};
 use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen};
@@ -18,13 +18,11 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-/// Attribute that marks a series, and its value.
 const FORMAT: (&str, &str) = ("format", "hertzchain series");
 /// Datasets of the converter's readings, shots × samples: of both sensors, or of one each.
 const SUMMED: &[&str] = &["samples"];
 /// Numbers of the shots; the scale of the first axis.
 const SHOT: &str = "shot";
-/// Programmed and measured speeds in m/s.
 const PROGRAMMED: &str = "programmed_speed";
 const MEASURED: &str = "measured_speed";
 /// 1 if the trigger fired, 0 if the recorder gave up waiting for it.
@@ -54,7 +52,7 @@ pub(crate) fn is_series(open: &H5File) -> bool {
     text(open, FORMAT.0).as_deref() == Some(FORMAT.1)
 }
 
-pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open(file: &Path, open: &H5File, options: &ReadOptions) -> Result<Raw> {
     let foreign = |error: Hdf5Error| malformed(file, damaged(&error));
     let channels = channels(open).map_err(foreign)?;
     let names: Vec<String> = channels.iter().map(|one| one.0.to_owned()).collect();
@@ -115,7 +113,7 @@ struct OpenSeries {
 }
 
 impl OpenSeries {
-    fn record(&self, row: usize) -> Result<Record, MeasureError> {
+    fn record(&self, row: usize) -> Result<Record> {
         let shot = self.numbers.get(row).and_then(|n| u64::try_from(*n).ok());
         let number = shot.unwrap_or(row as u64);
         let source = format!("{}, shot {number}", self.head.source);
@@ -188,7 +186,6 @@ fn text(open: &H5File, name: &str) -> Option<String> {
     open.attr_string(name).ok()
 }
 
-/// A number that the file has as text.
 fn number_text(open: &H5File, name: &str) -> Option<f64> {
     text(open, name)?.trim().parse().ok()
 }
@@ -197,7 +194,7 @@ fn number_text(open: &H5File, name: &str) -> Option<f64> {
 ///
 /// # Errors
 /// Files that are not series of a virtual campaign.
-pub fn untriggered(file: &Path) -> Result<usize, MeasureError> {
+pub fn untriggered(file: &Path) -> Result<usize> {
     let count = || -> Result<usize, Hdf5Error> {
         let open = H5File::open(file)?;
         let shots = dataset(&open, SHOT)?.shape().iter().product();
@@ -212,7 +209,7 @@ pub fn untriggered(file: &Path) -> Result<usize, MeasureError> {
 ///
 /// # Errors
 /// Files that are not series of a virtual campaign.
-pub fn truth(file: &Path) -> Result<Vec<(String, Vec<f64>)>, MeasureError> {
+pub fn truth(file: &Path) -> Result<Vec<(String, Vec<f64>)>> {
     let columns = || -> Result<Vec<(String, Vec<f64>)>, Hdf5Error> {
         let open = H5File::open(file)?;
         let mut names = open.root_group().group(TRUTH)?.dataset_names()?;
@@ -237,7 +234,7 @@ pub fn verify(
     info: &SeriesInfo,
     shots: usize,
     programmed_speed_m_s: f64,
-) -> Result<(), MeasureError> {
+) -> Result<()> {
     let reading = |cause| MeasureError::reading(file, cause);
     let opened = File::open(file).map_err(reading)?;
     let expected = (shots, programmed_speed_m_s);
@@ -252,7 +249,6 @@ pub fn verify(
     }
 }
 
-/// The first thing that is other than expected.
 fn difference(
     file: &Path,
     info: &SeriesInfo,

@@ -1,6 +1,6 @@
 //! Stored numbers: how each is encoded, where those of a channel lie, and the records made of them.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::options::Parts;
 use crate::records::read::Raw;
 use crate::records::record::{Channel, Record, Samples, converter_range_v};
@@ -55,7 +55,6 @@ impl StoredNumber {
         }
     }
 
-    /// Values of numbers that lie side by side.
     pub(super) fn scaled(&self, bytes: &[u8]) -> Vec<f64> {
         let mut values = self.values(bytes);
         if self.scale != 1.0 || self.offset != 0.0 {
@@ -240,18 +239,11 @@ fn append(
     }
 }
 
-/// Samples of the channels of a table of shots.
 pub(crate) trait SampleSource {
     /// `count` samples of every channel from sample `from` of a row on.
-    fn samples(
-        &mut self,
-        row: usize,
-        from: usize,
-        count: usize,
-    ) -> Result<Vec<Samples>, MeasureError>;
+    fn samples(&mut self, row: usize, from: usize, count: usize) -> Result<Vec<Samples>>;
 }
 
-/// Channels in a file that can be searched through.
 pub(crate) struct StoredTable<R> {
     pub file: PathBuf,
     pub reader: R,
@@ -261,12 +253,7 @@ pub(crate) struct StoredTable<R> {
 }
 
 impl<R: Read + Seek> SampleSource for StoredTable<R> {
-    fn samples(
-        &mut self,
-        row: usize,
-        from: usize,
-        count: usize,
-    ) -> Result<Vec<Samples>, MeasureError> {
+    fn samples(&mut self, row: usize, from: usize, count: usize) -> Result<Vec<Samples>> {
         let shift = self.row_bytes.saturating_mul(row as u64);
         let channels = self.channels.iter();
         let read = channels.map(|one| {

@@ -1,7 +1,7 @@
 //! LabVIEW's TDMS. Written here: tdms-rs reads neither interleaved channels nor several chunks a
 //! segment, which most of LabVIEW's files have.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays;
 use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{ReadOptions, chosen};
@@ -16,7 +16,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// Opens a TDMS file: every group with samples is a record, or several if it is to be cut.
-pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let Index { groups, cut_short } = Index::read(file)?;
     if groups.is_empty() && cut_short.is_none() {
         return Err(MeasureError::empty(file_name(file)));
@@ -42,7 +42,7 @@ fn open_group(
     group: String,
     mut channels: Channels,
     options: &ReadOptions,
-) -> Result<Raw, MeasureError> {
+) -> Result<Raw> {
     let reading = |cause| MeasureError::reading(file, cause);
     let mut opened = File::open(file).map_err(reading)?;
     let times = times(&mut opened, &channels, options);
@@ -100,16 +100,13 @@ fn times(opened: &mut File, channels: &Channels, options: &ReadOptions) -> Optio
     })
 }
 
-/// Channels of a group by name.
 type Channels = IndexMap<String, TdmsChannel>;
 
-/// A channel of numbers, and what is stated of it.
 struct TdmsChannel {
     stored: StoredChannel,
     properties: HashMap<String, Property>,
 }
 
-/// The value of a property, as far as it is of use.
 #[derive(Clone, Debug, PartialEq)]
 enum Property {
     Number(f64),
@@ -197,7 +194,6 @@ impl TdmsChannel {
     }
 }
 
-/// Bytes of a segment's lead-in, and most of its metadata.
 const LEAD: u64 = 28;
 const MOST_METADATA: u64 = 1 << 28;
 /// Most objects of all segments together: a day of a hundred channels, a segment a second.
@@ -236,7 +232,6 @@ fn kind(code: u32) -> Option<NumberKind> {
     })
 }
 
-/// Bytes of a value of any type but text.
 fn width(code: u32) -> Option<usize> {
     match (kind(code), code) {
         (Some(kind), _) => Some(StoredNumber::plain(kind, false).width()),
@@ -268,7 +263,6 @@ impl HeaderBytes<'_> {
     }
 }
 
-/// Where the values of an object are in a chunk.
 #[derive(Clone)]
 enum Values {
     /// Type, number and bytes of them: one object's after the other's, or row by row.
@@ -329,7 +323,6 @@ struct Index {
 
 #[derive(Default)]
 struct TdmsWalk {
-    /// Objects of the segment by path.
     objects: IndexMap<String, Option<Values>>,
     /// The last layout of each object so far.
     known: HashMap<String, Option<Values>>,
@@ -359,7 +352,7 @@ impl Lead {
 }
 
 impl Index {
-    fn read(file: &Path) -> Result<Self, MeasureError> {
+    fn read(file: &Path) -> Result<Self> {
         let reading = |cause| MeasureError::reading(file, cause);
         let malformed = |detail: String| MeasureError::malformed(file, "TDMS", detail);
         let mut opened = File::open(file).map_err(reading)?;
@@ -498,10 +491,8 @@ impl TdmsWalk {
     }
 }
 
-/// A channel's place in every chunk of a segment.
 struct ChunkPlace {
     code: u32,
-    /// Bytes before its first value.
     begin: usize,
     count: usize,
     stride: usize,

@@ -1,6 +1,6 @@
 //! RIFF WAVE: the header by hound, the samples as raw numbers.
 
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen, numbered};
 use crate::records::read::Raw;
@@ -11,7 +11,7 @@ use std::io::{BufReader, Seek};
 use std::path::Path;
 
 /// Opens a WAV file; its whole numbers are shares of the full scale.
-pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let reading = |cause| MeasureError::reading(file, cause);
     let opened = File::open(file).map_err(reading)?;
     let wave = WavReader::new(BufReader::new(opened)).map_err(|error| refused(file, error))?;
@@ -47,7 +47,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureErr
     Ok(head.records(options.parts, table))
 }
 
-fn number(file: &Path, spec: WavSpec) -> Result<StoredNumber, MeasureError> {
+fn number(file: &Path, spec: WavSpec) -> Result<StoredNumber> {
     let (kind, scale, offset) = match (spec.sample_format, spec.bits_per_sample.div_ceil(8)) {
         (SampleFormat::Int, 1) => (NumberKind::U8, 1.0 / 128.0, -1.0),
         (SampleFormat::Int, 2) => (NumberKind::I16, 1.0 / 32_768.0, 0.0),

@@ -1,6 +1,6 @@
 //! Baseline and noise of a quiet stretch.
 
-use crate::error::{MeasureError, all_finite};
+use crate::error::{MeasureError, Result, all_finite};
 use crate::signal::statistics::median_and_spread;
 
 /// Offset and noise of a channel at rest.
@@ -31,7 +31,7 @@ impl Baseline {
 ///
 /// # Errors
 /// [`MeasureError::TooShort`] below 8 samples, [`MeasureError::NotFinite`].
-pub fn baseline(quiet: &[f64]) -> Result<Baseline, MeasureError> {
+pub fn baseline(quiet: &[f64]) -> Result<Baseline> {
     MeasureError::enough(quiet.len(), 8)?;
     all_finite(quiet)?;
     let calm = calm(quiet);
@@ -56,7 +56,6 @@ pub fn baseline(quiet: &[f64]) -> Result<Baseline, MeasureError> {
     })
 }
 
-/// Parts into which a quiet stretch is divided.
 const PARTS: usize = 64;
 /// Robust deviations of the parts' means beyond which one holds more than noise.
 const MORE: f64 = 4.0;

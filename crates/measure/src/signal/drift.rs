@@ -11,7 +11,6 @@ const HIGHEST: usize = 3;
 const MARGIN: f64 = 2.0;
 /// Times of flight before the first pulse over which the baseline is fitted.
 const BEFORE: f64 = 1.5;
-/// Fewest samples before the first pulse.
 const FEWEST: usize = 64;
 /// Parts of the quiet stretch whose means show a drift, and the ratio of variances from which on it
 /// is one: by chance in 1 of 5,000 records.
@@ -22,13 +21,11 @@ const LEAST: f64 = 1e-4;
 /// Standard errors by which means of parts may be off the baseline: more is a step, or a tail.
 const MOST_OFF: f64 = 3.0;
 
-/// A record without its slow baseline.
 pub(super) struct Detrended {
     pub(super) samples: Vec<f64>,
     first: usize,
     half: f64,
     solution: LinearSolution,
-    /// Standard deviation of a sample about the baseline.
     noise: f64,
 }
 

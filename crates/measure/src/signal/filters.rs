@@ -1,6 +1,6 @@
 //! Filters of a record: inverse high-pass, zero-phase low-pass, running means, amplifier's low-pass.
 
-use crate::error::{MeasureError, all_finite};
+use crate::error::{MeasureError, Result, all_finite};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Corrects a record for AC coupling: the exact inverse of a first-order high-pass
@@ -13,11 +13,7 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 ///
 /// # Errors
 /// Interval or time constant not positive; samples not finite.
-pub fn invert_high_pass(
-    samples: &mut [f64],
-    interval_s: f64,
-    time_constant_s: f64,
-) -> Result<(), MeasureError> {
+pub fn invert_high_pass(samples: &mut [f64], interval_s: f64, time_constant_s: f64) -> Result<()> {
     MeasureError::positive("sampling interval in s", interval_s)?;
     MeasureError::positive("time constant of the high-pass in s", time_constant_s)?;
     all_finite(samples)?;
@@ -57,7 +53,7 @@ impl LowPass {
     /// # Errors
     /// Order not 2 or 4; cutoff not between 0 and half the sampling rate; too few or not finite
     /// samples.
-    pub fn apply(&self, samples: &[f64], interval_s: f64) -> Result<Vec<f64>, MeasureError> {
+    pub fn apply(&self, samples: &[f64], interval_s: f64) -> Result<Vec<f64>> {
         let sections = self.sections(interval_s)?;
         let edge = 3 * (self.order + 1);
         MeasureError::enough(samples.len(), edge + 1)?;
@@ -79,7 +75,7 @@ impl LowPass {
         Ok(all)
     }
 
-    fn sections(&self, interval_s: f64) -> Result<Vec<Biquad>, MeasureError> {
+    fn sections(&self, interval_s: f64) -> Result<Vec<Biquad>> {
         MeasureError::positive("sampling interval in s", interval_s)?;
         let turns = self.cutoff_hz * interval_s;
         let expected = "a number between 0 and half the sampling rate";
@@ -155,7 +151,7 @@ pub struct Bandwidth {
 
 impl Bandwidth {
     /// Coefficients a and b of the inverse x = y + a y′ + b y″, in samples.
-    pub(crate) fn inverse(&self, interval_s: f64) -> Result<[f64; 2], MeasureError> {
+    pub(crate) fn inverse(&self, interval_s: f64) -> Result<[f64; 2]> {
         MeasureError::positive("corner of the amplifier's low-pass in Hz", self.corner_hz)?;
         let name = "order of the amplifier's low-pass";
         let accepted = self.order == 1 || self.order == 2;

@@ -159,9 +159,7 @@ pub(crate) struct LocalPolynomial {
     pub(crate) centre: f64,
     pub(crate) half: f64,
     pub(crate) degree: usize,
-    /// Coefficients and their covariance for unit noise.
     pub(crate) solution: LinearSolution,
-    /// Root mean square of the residuals, over the degrees of freedom.
     pub(crate) residual: f64,
     pub(crate) freedom: f64,
 }
@@ -262,7 +260,6 @@ impl LocalPolynomial {
     }
 }
 
-/// 1, u, u² and so on.
 pub(crate) fn powers(u: f64) -> Row {
     let mut row = [1.0; MOST];
     for k in 1..MOST {

@@ -1,6 +1,6 @@
 //! Power laws by York's weighted least squares in the logarithms \[York2004\].
 
-use crate::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::signal::ChiSquare;
 
 /// y = `prefactor` · x^`exponent` with its errors.
@@ -65,11 +65,7 @@ impl PowerLaw {
 ///
 /// # Errors
 /// As [`power_law_both_errors`].
-pub fn power_law(
-    abscissas: &[f64],
-    values: &[f64],
-    sigmas: Option<&[f64]>,
-) -> Result<PowerLaw, MeasureError> {
+pub fn power_law(abscissas: &[f64], values: &[f64], sigmas: Option<&[f64]>) -> Result<PowerLaw> {
     let exact = vec![0.0; abscissas.len()];
     // Without sigmas relative errors of 1 give all points one weight.
     let law = power_law_both_errors(abscissas, &exact, values, sigmas.unwrap_or(values))?;
@@ -104,7 +100,7 @@ pub fn power_law_both_errors(
     abscissa_sigmas: &[f64],
     values: &[f64],
     sigmas: &[f64],
-) -> Result<PowerLaw, MeasureError> {
+) -> Result<PowerLaw> {
     check(abscissas, &[values, sigmas], Some(abscissa_sigmas))?;
     let variances = |of: &[f64], sigmas: &[f64]| {
         let relative = of.iter().zip(sigmas).map(|(x, s)| s / x);
@@ -234,7 +230,7 @@ pub struct Uncertainty {
 ///
 /// # Errors
 /// As [`power_law_both_errors`]; relative errors may be 0.
-pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, MeasureError> {
+pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty> {
     check(abscissas, &[], Some(relative))?;
     let x: Vec<f64> = abscissas.iter().map(|x| x.ln()).collect();
     if all_equal(&x) {
@@ -253,7 +249,7 @@ pub fn uncertainty(abscissas: &[f64], relative: &[f64]) -> Result<Uncertainty, M
 }
 
 /// Requires positive abscissas and values, errors of 0 or more, all of one length.
-fn check(abscissas: &[f64], values: &[&[f64]], errors: Option<&[f64]>) -> Result<(), MeasureError> {
+fn check(abscissas: &[f64], values: &[&[f64]], errors: Option<&[f64]>) -> Result<()> {
     for slice in values.iter().copied().chain(errors) {
         let (n, found) = (abscissas.len(), slice.len());
         if found != n {

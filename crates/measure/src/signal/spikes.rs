@@ -15,7 +15,6 @@ const DEGREE: usize = 4;
 const STANDS_OUT: f64 = 6.5;
 /// The same of the screen, which selects one sample of noise in 50,000.
 const SCREEN: f64 = 4.5;
-/// Neighbours that may be spikes as well.
 const MOST_NEIGHBOURS: usize = 3;
 /// Fewer degrees of freedom leave too little of narrow tops to distinguish them from spikes.
 const LEAST_FREEDOM: usize = 5;

@@ -10,7 +10,6 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Adds a relative error in quadrature.
     pub(crate) fn widen(&mut self, relative: f64) {
         self.sigma = self.sigma.hypot(relative * self.value);
     }
@@ -33,7 +32,6 @@ pub fn median(values: &[f64]) -> Option<f64> {
     Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Median and 1.4826 times the median absolute deviation from it.
 pub(crate) fn median_and_spread(values: &[f64]) -> Option<(f64, f64)> {
     let centre = median(values)?;
     let far: Vec<f64> = values.iter().map(|x| (x - centre).abs()).collect();

@@ -4,7 +4,7 @@ use super::{
     CASE, CONTACT, EXPERIMENT, FORMAT, INTERVAL, MEASURED, OFFSET, PRETRIGGER, PROGRAMMED,
     SEPARATE, SHOT, SUMMED, TRIGGERED, TRUTH, VOLTS_PER_COUNT,
 };
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::files::{exclusive, persist};
 use crate::records::hdf5::{describe, unit};
 use rust_hdf5::{H5Dataset, H5File, H5Group, H5Type, Hdf5Error};
@@ -118,7 +118,7 @@ impl SeriesWriter {
     ///
     /// # Errors
     /// [`MeasureError::Unwritable`]; [`MeasureError::Samples`] without samples.
-    pub fn create(path: &Path, info: &SeriesInfo) -> Result<Self, MeasureError> {
+    pub fn create(path: &Path, info: &SeriesInfo) -> Result<Self> {
         if info.samples_per_shot == 0 {
             return Err(MeasureError::empty(file_name(path)));
         }
@@ -139,7 +139,7 @@ impl SeriesWriter {
     /// # Errors
     /// [`MeasureError::Samples`] if it has not the series' samples or true values;
     /// [`MeasureError::Unwritable`], after which the series cannot be finished.
-    pub fn push(&mut self, row: &ShotRow<'_>) -> Result<(), MeasureError> {
+    pub fn push(&mut self, row: &ShotRow<'_>) -> Result<()> {
         if let Some(misfit) = self.misfit(row) {
             let detail = format!("shot {} does not fit the series: {misfit}", row.shot);
             return Err(MeasureError::Samples(file_name(&self.path), detail));
@@ -158,7 +158,7 @@ impl SeriesWriter {
     ///
     /// # Errors
     /// [`MeasureError::Samples`] without shots, [`MeasureError::Unwritable`].
-    pub fn finish(self) -> Result<PathBuf, MeasureError> {
+    pub fn finish(self) -> Result<PathBuf> {
         if self.columns.shots.is_empty() {
             return Err(MeasureError::empty(file_name(&self.path)));
         }
@@ -174,7 +174,6 @@ impl SeriesWriter {
         Ok(self.path)
     }
 
-    /// Why a shot does not fit the series.
     fn misfit(&self, row: &ShotRow<'_>) -> Option<String> {
         let all = self.open.channels.len() * self.samples_per_shot;
         let found = row.samples.len();
@@ -199,7 +198,6 @@ impl SeriesWriter {
     }
 }
 
-/// What is small and written last, a column each.
 #[derive(Default)]
 struct SeriesColumns {
     shots: Vec<i64>,
@@ -311,7 +309,6 @@ fn column<T: H5Type>(
     Ok(column)
 }
 
-/// A file with its attributes and empty channels.
 fn start(part: &Path, info: &SeriesInfo) -> Result<Open, Hdf5Error> {
     let file = H5File::create(part)?;
     file.set_attr_string(FORMAT.0, FORMAT.1)?;

@@ -5,12 +5,10 @@ use std::borrow::Cow;
 use std::io;
 use std::path::Path;
 
-/// Bytes of a file that show its dialect.
 const BEGINNING: usize = 1 << 18;
 
 const ROWS: usize = 60;
 
-/// Rows in succession that begin the numbers.
 const FIRST_ROWS: usize = 3;
 
 /// Share of rows in which a column must hold a number to be one of numbers.
@@ -92,12 +90,10 @@ impl Dialect {
         fields(line, self.delimiter)
     }
 
-    /// The number in a column of a row.
     pub(super) fn value(&self, row: &[Cow<'_, str>], column: usize) -> Option<f64> {
         number(row.get(column)?, self.decimal_comma)
     }
 
-    /// Whether all columns of numbers hold numbers.
     fn is_row(&self, line: &str) -> bool {
         let row = self.fields(line);
         let mut columns = self.columns.iter();
@@ -176,7 +172,6 @@ pub(super) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
         .or_else(|| time_of_day_s(text))
 }
 
-/// A number with nothing between its thousands.
 fn plain(text: &str, decimal_comma: bool) -> Option<f64> {
     // No number begins with other letters; the parser takes its time to say so.
     let first = text.bytes().next()?;

@@ -15,7 +15,6 @@ const PREFIXES: &[(&[&str], f64)] = &[
     (&["n", "nano"], 1e-9),
 ];
 
-/// Endings of units of rates, and prefixes.
 const RATES: &[&str] = &["hz", "s/s", "sa/s"];
 const RATE_PREFIXES: &[(&[&str], f64)] =
     &[(&[""], 1.0), (&["k"], 1e3), (&["m"], 1e6), (&["g"], 1e9)];
@@ -38,7 +37,6 @@ const INTERVALS: &[&str] = &[
     "dt", "abtastintervall",
 ];
 
-/// Names of rates that begin a header line.
 #[rustfmt::skip]
 const RATE_NAMES: &[&str] = &[
     "sample rate", "sampling rate", "samplerate", "sampling frequency", "sample frequency", "rate",
@@ -120,12 +118,10 @@ impl TextHeader {
     }
 }
 
-/// A unit of time in s, however it is written.
 fn seconds(unit: &str) -> Option<f64> {
     prefixed(unit.trim().trim_end_matches('.'), SECONDS, PREFIXES)
 }
 
-/// The prefix of a unit as a number.
 fn prefixed(unit: &str, units: &[&str], prefixes: &[(&[&str], f64)]) -> Option<f64> {
     let unit = unit.trim().to_lowercase();
     units.iter().find_map(|known| {
@@ -264,7 +260,6 @@ fn below_s(titles: &str, values: &str, dialect: &Dialect) -> Option<f64> {
     dialect.value(&dialect.fields(values), at)
 }
 
-/// The interval that a line states after a name.
 fn line_states_s(line: &str, dialect: &Dialect) -> Option<f64> {
     let line = line.trim_start_matches(['#', '"', '%', ' ', '\t']);
     let lower = line.to_lowercase();

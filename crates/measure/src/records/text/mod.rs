@@ -5,7 +5,7 @@ mod header;
 mod rows;
 mod times;
 
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::records::interval::{SampleInterval, interval_s, seconds_assumed};
 use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
@@ -17,7 +17,6 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
-/// Bytes that show an encoding without a mark.
 const PROBE: usize = 64;
 
 /// Most bytes of a text in UTF-16, which is decoded as a whole: 1 GiB.
@@ -26,8 +25,7 @@ const MOST_DECODED: u64 = 1 << 30;
 /// Most bytes of a line: 16 MiB, a row of a million samples of sixteen letters.
 const MOST_LINE: usize = 1 << 24;
 
-/// Opens a file of text; its beginning shows the columns.
-pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw, MeasureError> {
+pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let reading = |cause| MeasureError::reading(file, cause);
     let malformed = |detail: &str| MeasureError::malformed(file, "text", detail);
     let beginning = dialect::beginning(file).map_err(reading)?;
@@ -101,15 +99,12 @@ fn text(bytes: &[u8]) -> String {
 /// Lines that end with LF, CR LF or CR alone; as many CR as there are before one LF are one end.
 struct Lines {
     reader: Box<dyn BufRead>,
-    /// Empty lines that were read and not returned yet.
     blank: usize,
 }
 
 #[derive(PartialEq)]
 enum LineEnding {
-    /// With its end.
     Whole,
-    /// The file ended first.
     Begun,
     Nothing,
 }
@@ -130,7 +125,6 @@ impl Lines {
         Ok(Self { reader, blank: 0 })
     }
 
-    /// Reads the next line without its end.
     fn next(&mut self, line: &mut Vec<u8>) -> io::Result<LineEnding> {
         line.clear();
         if self.blank > 0 {

@@ -3,7 +3,7 @@
 use super::dialect::{Dialect, last_digit, no_number, number};
 use super::times::{self, Printed, Returns};
 use super::{LineEnding, Lines, text};
-use crate::error::{MeasureError, file_name};
+use crate::error::{MeasureError, Result, file_name};
 use crate::records::interval::{self, SampleInterval};
 use crate::records::options::{Parts, ReadOptions};
 use crate::records::record::{Channel, Record};
@@ -33,7 +33,6 @@ pub(super) struct RowPlan {
     pub note: Option<String>,
 }
 
-/// An iterator over the records of a text: its segments.
 pub(super) struct Segments {
     file: PathBuf,
     lines: Lines,
@@ -41,7 +40,6 @@ pub(super) struct Segments {
     plan: RowPlan,
     line: usize,
     ended: bool,
-    /// Skipping to the next segment after a bad row.
     skipping: bool,
     shots: u64,
     /// Samples of the segment under way that were returned before.
@@ -54,10 +52,9 @@ pub(super) struct Segments {
     /// Whether no row came since a segment's end: lines in words would be its footer.
     trailing: bool,
     block: TextBlock,
-    ready: VecDeque<Result<Record, MeasureError>>,
+    ready: VecDeque<Result<Record>>,
 }
 
-/// Rows since the last separator.
 #[derive(Default)]
 struct TextBlock {
     times: Vec<Printed>,
@@ -70,7 +67,6 @@ impl TextBlock {
     }
 }
 
-/// Lines in words that follow numbers.
 struct Footer {
     shown: String,
     detail: String,
@@ -298,7 +294,7 @@ impl Segments {
         }
     }
 
-    fn record(&mut self, block: &TextBlock, range: Range<usize>) -> Result<Record, MeasureError> {
+    fn record(&mut self, block: &TextBlock, range: Range<usize>) -> Result<Record> {
         // The number of the only record would say nothing, but when it is made it is not known
         // whether more will follow.
         let segment = match self.shots {
@@ -326,11 +322,7 @@ impl Segments {
     }
 
     /// The interval of a segment; a piece that goes on has that of the piece before it.
-    fn interval(
-        &mut self,
-        source: &str,
-        times: &[Printed],
-    ) -> Result<SampleInterval, MeasureError> {
+    fn interval(&mut self, source: &str, times: &[Printed]) -> Result<SampleInterval> {
         let options = &self.plan.options;
         if let Some(rate_hz) = options.trusted_rate_hz() {
             return Ok(SampleInterval::exact(rate_hz.recip()));
@@ -353,7 +345,7 @@ fn is_worded(line: &str) -> bool {
 }
 
 impl Iterator for Segments {
-    type Item = Result<Record, MeasureError>;
+    type Item = Result<Record>;
 
     fn next(&mut self) -> Option<Self::Item> {
         // A footer after a blank line is noted with the record before it.

@@ -1,6 +1,6 @@
 //! Times printed beside samples: where segments begin, and the interval that their digits allow.
 
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::records::interval::FromTimes;
 use std::ops::Range;
 
@@ -27,7 +27,6 @@ const STEPS: usize = 100;
 /// Rows by which numbers must rise evenly to be times: signals do by chance for some.
 const RISEN: usize = 32;
 
-/// A time as it is printed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Printed {
     pub s: f64,
@@ -36,7 +35,6 @@ pub(super) struct Printed {
 }
 
 impl Printed {
-    /// How far the true time may be off.
     fn half_s(&self) -> f64 {
         0.5 * self.unit_s + self.rounding_s()
     }
@@ -74,7 +72,7 @@ pub(super) fn segments(times: &[Printed]) -> Vec<Range<usize>> {
 }
 
 /// The even interval of a segment's times; an error of times that are not even.
-pub(super) fn interval(source: &str, times: &[Printed]) -> Result<FromTimes, MeasureError> {
+pub(super) fn interval(source: &str, times: &[Printed]) -> Result<FromTimes> {
     match times.len() {
         0 => Err(MeasureError::empty(source.to_owned())),
         1 => Err(MeasureError::truncated(source.to_owned(), "a single sample has no interval")),

@@ -1,7 +1,7 @@
 //! One channel: polarity, baseline, its first pulse, and smoothed stretches with their maxima.
 
 use super::{Normalisation, Polarity, Pulse, PulseKind};
-use crate::error::{MeasureError, all_finite};
+use crate::error::{MeasureError, Result, all_finite};
 use crate::signal::baseline::{Baseline, baseline};
 use crate::signal::filters::triangular_mean;
 use crate::signal::statistics::{NORMAL_MAD, median, median_and_spread};
@@ -9,7 +9,6 @@ use std::ops::Range;
 
 /// Samples averaged for a coarse view: noise is halved, a pulse of some ten samples stays.
 pub(super) const BLOCK: usize = 4;
-/// Least samples for a baseline of its own.
 const QUIET: usize = 32;
 /// Most samples before the first pulse that the baseline is computed from.
 const ENOUGH: usize = 8192;
@@ -25,11 +24,9 @@ const CLEAN: f64 = 0.005;
 /// Longest average, as a share of the first pulse's width.
 const LONGEST: f64 = 0.25;
 
-/// A channel with its normalisation and first pulse.
 pub(super) struct ChannelSignal<'a> {
     pub(super) samples: &'a [f64],
     pub(super) normalisation: Normalisation,
-    /// Means of every `BLOCK` samples.
     blocks: Vec<f64>,
     /// Sample at which the first pulse passes a quarter of the largest swing.
     pub(super) first: usize,
@@ -39,11 +36,7 @@ pub(super) struct ChannelSignal<'a> {
 
 impl<'a> ChannelSignal<'a> {
     /// The first pulse exceeds this share of the largest swing.
-    pub(super) fn new(
-        samples: &'a [f64],
-        polarity: Polarity,
-        share: f64,
-    ) -> Result<Self, MeasureError> {
+    pub(super) fn new(samples: &'a [f64], polarity: Polarity, share: f64) -> Result<Self> {
         MeasureError::enough(samples.len(), 16 * BLOCK)?;
         let (low, high) = extremes(samples);
         let blocks = blocks(samples, (low, high))?;
@@ -80,7 +73,6 @@ impl<'a> ChannelSignal<'a> {
         value.map_or(0.0, |value| self.normalisation.height(value))
     }
 
-    /// First sample and height of the largest block between two samples.
     pub(super) fn largest_block(&self, from: f64, to: f64) -> Option<(usize, f64)> {
         let block = |sample: f64| (sample / BLOCK as f64).clamp(0.0, self.blocks.len() as f64);
         let blocks = block(from) as usize..block(to) as usize;
@@ -90,7 +82,7 @@ impl<'a> ChannelSignal<'a> {
 }
 
 /// Means of `BLOCK` samples each; what is left over at the end is not used.
-fn blocks(samples: &[f64], (low, high): (f64, f64)) -> Result<Vec<f64>, MeasureError> {
+fn blocks(samples: &[f64], (low, high): (f64, f64)) -> Result<Vec<f64>> {
     let (whole, rest) = samples.as_chunks::<BLOCK>();
     let scale = (BLOCK as f64).recip();
     let means = whole.iter().map(|[a, b, c, d]| ((a + b) + (c + d)) * scale);
@@ -141,7 +133,7 @@ fn rough_width(blocks: &[f64], cross: usize, height: impl Fn(f64) -> f64) -> f64
 }
 
 /// Baseline before the first pulse; a rough one of the whole record if there is no such part.
-fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline, MeasureError> {
+fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline> {
     let quiet = &quiet[quiet.len().saturating_sub(ENOUGH)..];
     if quiet.len() >= QUIET {
         return baseline(quiet);
@@ -186,7 +178,6 @@ pub(super) struct Smoothed<'a> {
     first: usize,
     values: Vec<f64>,
     pub(super) noise: f64,
-    /// Samples in each of the two averages.
     length: usize,
     /// Maxima that stand out of noise and of the highest pulse's hundredths.
     pub(super) maxima: Vec<SmoothedMaximum>,
@@ -253,7 +244,6 @@ impl<'a> Smoothed<'a> {
         maxima.into_iter().map(maximum).collect()
     }
 
-    /// Smoothed height at a sample; 0 outside.
     fn height(&self, at: usize) -> f64 {
         let value = at.checked_sub(self.first).and_then(|i| self.values.get(i));
         value.copied().unwrap_or(0.0)

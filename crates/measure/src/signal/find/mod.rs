@@ -9,7 +9,7 @@ mod select;
 pub use found::{CompetingMaximum, Found, Normalisation, Pulse, PulseKind, QualityFlag};
 pub use options::{Channels, DigitiserRange, FindOptions, Polarity, PulseLimits};
 
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use channel::{ChannelSignal, FIRST, FIRST_LOW, Smoothed};
 use select::PulseSelection;
 
@@ -29,7 +29,7 @@ use select::PulseSelection;
 /// # Errors
 /// Too few, not finite or constant samples; no pulse at all; channels of different lengths; options
 /// out of range. A missing wall or reflected pulse is no error but a [`QualityFlag`].
-pub fn pulses(channels: Channels<'_>, options: &FindOptions) -> Result<Found, MeasureError> {
+pub fn pulses(channels: Channels<'_>, options: &FindOptions) -> Result<Found> {
     conditioned_pulses(channels, channels, options)
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn conditioned_pulses(
     channels: Channels<'_>,
     recorded: Channels<'_>,
     options: &FindOptions,
-) -> Result<Found, MeasureError> {
+) -> Result<Found> {
     options.check()?;
     let (mut found, others) = match channels {
         Channels::Summed(samples) => summed(samples, options),
@@ -60,14 +60,14 @@ pub(crate) fn conditioned_pulses(
 ///
 /// # Errors
 /// As [`pulses`].
-pub fn normalisation(samples: &[f64], polarity: Polarity) -> Result<Normalisation, MeasureError> {
+pub fn normalisation(samples: &[f64], polarity: Polarity) -> Result<Normalisation> {
     ChannelSignal::new(samples, polarity, FIRST).map(|channel| channel.normalisation)
 }
 
 /// What was found, and other maxima that could be the largest of their pulses.
 type Gathered = (Found, Vec<Pulse>);
 
-fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, MeasureError> {
+fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered> {
     let doubtful = [QualityFlag::Order, QualityFlag::Unidentified];
     let is_complete = |(found, _): &Gathered| {
         found.pulses().count() == 3 && !doubtful.iter().any(|flag| found.flags.contains(flag))
@@ -81,11 +81,7 @@ fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered, MeasureErr
 }
 
 /// The pulses of a channel whose first one exceeds a share of the largest swing.
-fn summed_above(
-    samples: &[f64],
-    options: &FindOptions,
-    share: f64,
-) -> Result<Gathered, MeasureError> {
+fn summed_above(samples: &[f64], options: &FindOptions, share: f64) -> Result<Gathered> {
     let channel = ChannelSignal::new(samples, options.polarity, share)?;
     let end = select::end_of_interest(&channel, options);
     let mut smoothed = Smoothed::of_all(&channel, end);
@@ -104,7 +100,7 @@ fn summed_above(
     Ok(gather(&selection, [&smoothed, &smoothed, back]))
 }
 
-fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathered, MeasureError> {
+fn separate(sensor: &[f64], wall: &[f64], options: &FindOptions) -> Result<Gathered> {
     if sensor.len() != wall.len() {
         return Err(MeasureError::Lengths(format!(
             "the sensor's channel has {} samples and the wall's {}: they must be recorded together",

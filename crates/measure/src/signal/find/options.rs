@@ -1,6 +1,6 @@
 //! What is known of a record before its pulses are searched for.
 
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 
 /// Samples of a shot: how sensor bead and wall were recorded.
 #[derive(Clone, Copy, Debug)]
@@ -149,7 +149,7 @@ impl FindOptions {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), MeasureError> {
+    pub(super) fn check(&self) -> Result<()> {
         MeasureError::positive("width of a pulse in beads", self.limits.width_beads)?;
         let Some((beads, sensor)) = self.beads else {
             return Ok(());

@@ -20,7 +20,6 @@ const LEAST_SIGNIFICANCE: f64 = 4.3;
 
 #[derive(Clone, Default)]
 pub(super) struct PulseSelection {
-    /// Incident, wall, reflected.
     pub(super) maxima: [Option<SmoothedMaximum>; 3],
     pub(super) order_doubtful: bool,
     /// One of the three is missing, and it is open which.
@@ -46,7 +45,6 @@ impl Timing {
         Some((beads as f64 - sensor as f64 + 0.5) / self.limits.width_beads * self.width)
     }
 
-    /// Earliest and latest wall pulse after the incident one.
     fn wall_window(&self) -> (f64, f64) {
         let bounds = |expected: f64| ((expected / LOOSELY).max(self.width), expected * LOOSELY);
         let unknown = (self.width, f64::INFINITY);
@@ -105,7 +103,6 @@ pub(super) fn end_of_interest(channel: &ChannelSignal<'_>, options: &FindOptions
     (end + 3.0 * channel.width) as usize
 }
 
-/// Incident, wall, reflected in one channel, in this order.
 pub(super) fn summed(smoothed: &Smoothed<'_>, options: &FindOptions) -> PulseSelection {
     let (channel, maxima) = (smoothed.channel, &smoothed.maxima);
     let timing = Timing::new(channel, options);

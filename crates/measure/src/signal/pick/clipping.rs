@@ -146,7 +146,6 @@ fn curvature_evidence(whole: &Optimum<Row>, noise: f64, gaussian: f64) -> Option
 
 /// Share of the height at which a pulse is clipped down to which its flanks are fitted.
 const FOOT: f64 = 0.25;
-/// Fewest samples of the longer flank.
 const FEWEST_NEXT: usize = 4;
 
 /// A Gaussian through the flanks of a clipped pulse; in samples.

@@ -2,7 +2,7 @@
 
 use super::polynomial::pick_roughly;
 use super::{ChannelView, Picked};
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::signal::Pulse;
 use crate::signal::filters::triangular_mean;
 
@@ -24,7 +24,6 @@ const LEAST: f64 = 0.25;
 /// lags, and so does not matter.
 pub(super) struct Correlator {
     template: Vec<f64>,
-    /// Samples from the template's first to its own maximum.
     top: f64,
     /// Σ t'² over its samples.
     slopes: f64,
@@ -33,7 +32,7 @@ pub(super) struct Correlator {
 }
 
 impl Correlator {
-    pub(super) fn new(sensor: &ChannelView<'_>, pulse: &Pulse) -> Result<Self, MeasureError> {
+    pub(super) fn new(sensor: &ChannelView<'_>, pulse: &Pulse) -> Result<Self> {
         if pulse.clipped.is_some() {
             let what = "top to be a template, clipped as it is,";
             return Err(MeasureError::NoPick(pulse.kind, what));
@@ -63,11 +62,7 @@ impl Correlator {
     /// included, and s the signal, Σ t' s' being the curvature of their correlation. Noise of the
     /// record's own pulse counts at the incident pulse, as it is common to all delays against it:
     /// noise²/Σ t'², without the noise in t.
-    pub(super) fn pick(
-        &self,
-        view: &ChannelView<'_>,
-        pulse: &Pulse,
-    ) -> Result<Picked, MeasureError> {
+    pub(super) fn pick(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked> {
         if self.own.0 == pulse.at {
             return Ok(self.own.1);
         }

@@ -102,9 +102,7 @@ fn first_adequate(tries: impl Iterator<Item = Option<((Picked, bool), f64)>>) ->
     last
 }
 
-/// Where a bell is fitted, and its prior.
 struct BellWindow {
-    /// Samples from the middle to either end.
     half: f64,
     prior: ShapePrior,
 }
@@ -251,7 +249,6 @@ fn reach(fit: &LocalPolynomial, u: f64, noise: f64) -> f64 {
     apart.fold(0.0, f64::max)
 }
 
-/// The bell's logarithm about a centre, and where its maximum is.
 fn fit(
     view: &ChannelView<'_>,
     pulse: &Pulse,
@@ -329,7 +326,6 @@ impl BellData {
         terms.map(|(r, c)| r * c).sum()
     }
 
-    /// Whether the bell is above its level at u.
     pub(super) fn is_capped(&self, bell: &Row, u: f64) -> bool {
         self.capped && self.logarithm(bell, u).exp() > bell[LEVEL]
     }
@@ -392,7 +388,6 @@ impl BellData {
 /// of a bell y = exp(Σ c_k u^k), in units of u; a and b are in samples.
 struct Slope {
     value: f64,
-    /// Its own rate of change.
     derivative: f64,
     /// Its derivatives by the coefficients of the bell's logarithm.
     row: Row,
@@ -434,7 +429,6 @@ impl Slope {
     }
 }
 
-/// Rows of the first four derivatives of Σ c_k u^k.
 fn derivative_rows(u: f64) -> [Row; 4] {
     let mut rows = [[0.0; MOST]; 4];
     for (order, row) in rows.iter_mut().enumerate() {

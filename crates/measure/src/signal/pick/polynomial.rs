@@ -1,7 +1,7 @@
 //! Maximum and onset of a pulse by polynomials fitted to a part of it.
 
 use super::{ChannelView, Picked, Systematic};
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::signal::Pulse;
 use crate::signal::linear::LocalPolynomial;
 use std::f64::consts::LN_2;
@@ -76,14 +76,14 @@ impl Top {
 }
 
 /// Maximum for a height and a time that need not be free of bias, by a quartic over one width.
-pub(super) fn pick_roughly(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
+pub(super) fn pick_roughly(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked> {
     let fit = fit_maximum(view, pulse, 4, pulse.width_samples);
     let picked = fit.map(|(fit, u)| pick_at(view, pulse, &fit, u));
     picked.map_or_else(|| pick_in_noise(view, pulse), Ok)
 }
 
 /// Time in samples where noise hides the shape.
-pub(super) fn pick_in_noise(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
+pub(super) fn pick_in_noise(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked> {
     let mut tries = IN_NOISE.into_iter();
     let (fit, u) = tries
         .find_map(|(degree, width)| fit_maximum(view, pulse, degree, width * pulse.width_samples))
@@ -157,7 +157,7 @@ pub(super) fn pick_onset(
     pulse: &Pulse,
     fraction: f64,
     top: Picked,
-) -> Result<Picked, MeasureError> {
+) -> Result<Picked> {
     if pulse.clipped.is_some() && fraction * top.height >= FREE * pulse.height {
         let what = "rising flank up to that share, clipped as it is,";
         return Err(MeasureError::NoPick(pulse.kind, what));

@@ -1,7 +1,7 @@
 //! A pulse's shape fitted to the whole of it.
 
 use super::{ChannelView, Picked, Systematic};
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::signal::Pulse;
 use crate::signal::linear::{MOST, NormalEquations, Row, levenberg_marquardt};
 
@@ -45,7 +45,7 @@ pub(super) fn pick(
     pulse: &Pulse,
     shape: &Shape,
     width: f64,
-) -> Result<Picked, MeasureError> {
+) -> Result<Picked> {
     let points = points(view, pulse, width);
     let found = levenberg_marquardt(
         [pulse.height, pulse.at as f64, pulse.width_samples, 0.0],
@@ -72,7 +72,6 @@ pub(super) fn pick(
     })
 }
 
-/// Numbers and heights of the samples to be fitted.
 fn points(view: &ChannelView<'_>, pulse: &Pulse, width: f64) -> Vec<(f64, f64)> {
     let half = (0.5 * width * pulse.width_samples).max(3.0);
     let at = pulse.at as f64;
@@ -86,7 +85,6 @@ fn points(view: &ChannelView<'_>, pulse: &Pulse, width: f64) -> Vec<(f64, f64)> 
     points.map(|(sample, height)| (sample as f64, height)).collect()
 }
 
-/// Normal equations of a step from a model, and the model's sum of squares.
 fn normal(points: &[(f64, f64)], model: &[f64; 4], shape: &Shape) -> (NormalEquations, f64) {
     let [height, time, width, offset] = *model;
     let mut normal = NormalEquations::new(model.len());

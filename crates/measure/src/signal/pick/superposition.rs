@@ -90,7 +90,6 @@ impl ChannelView<'_> {
         squared.max(0.0).sqrt().copysign(mean)
     }
 
-    /// Mean height of a stretch, and its number of samples.
     fn mean(&self, from: f64, to: f64) -> (f64, f64) {
         let (_, heights) = self.window(from, to);
         let count = heights.len() as f64;
