@@ -257,6 +257,16 @@ fn grouped<'a>(timed: &[Timed<'a>], gap_m_s: f64) -> Vec<Vec<Timed<'a>>> {
     [by(true, 0.0), by(false, gap_m_s)].concat()
 }
 
+/// Of shots whose pulses were all picked by hand where none was found.
+const NO_HEIGHTS: Summary = Summary {
+    count: 0,
+    mean: f64::NAN,
+    deviation: f64::NAN,
+    error: f64::NAN,
+    weighted: Estimate { value: f64::NAN, sigma: f64::NAN },
+    chi_square: f64::NAN,
+};
+
 /// Of shots of one speed, and of how many more that have no time or speed.
 fn row(group: &[Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedRow> {
     let counted: Vec<&Timed<'_>> = group.iter().filter(|shot| shot.counts).collect();
@@ -310,7 +320,7 @@ fn row(group: &[Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedR
         returns_missing: counted.len() - returns - returns_undecided,
         incident_s,
         reflected_s,
-        wall_over_incident: of(&|flight| Some(flight.wall_over_incident))?,
+        wall_over_incident: of(&|flight| Some(flight.wall_over_incident)).unwrap_or(NO_HEIGHTS),
         reflected_over_incident: of(&|flight| flight.reflected_over_incident),
         widths_s: PulseKind::ALL.map(width),
     })
@@ -330,7 +340,6 @@ fn mean_speed(speeds: &[Estimate]) -> Option<Estimate> {
     })
 }
 
-/// Whether each shot's speed has an error of its own.
 fn are_known(speeds: &[Estimate]) -> bool {
     speeds.iter().all(|speed| speed.sigma > 0.0)
 }
@@ -350,9 +359,7 @@ struct TimeAtSpeed {
     picking_s2: f64,
     /// What scatters besides, less what errors of measured speeds account for.
     excess_s2: f64,
-    /// What all shots share, in s.
     shared_s: f64,
-    /// What the mean speed's error moves it by, in s.
     of_speed_s: f64,
 }
 

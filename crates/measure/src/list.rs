@@ -1,6 +1,7 @@
 //! Speeds and cases of recordings that do not state them: `shots.csv`.
 
-use crate::{MeasureError, Shot};
+use crate::Shot;
+use crate::error::{MeasureError, Result};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::collections::{HashMap, HashSet};
 use std::ffi::OsString;
@@ -11,7 +12,6 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShotList {
     entries: Vec<ListEntry>,
-    /// Entries by the file's name.
     by_name: HashMap<OsString, Vec<usize>>,
 }
 
@@ -25,21 +25,27 @@ pub(crate) struct ListEntry {
     pub speed_error_m_s: Option<f64>,
     /// Whether the user says that it counts, or does not.
     pub counts: Option<bool>,
+    /// Times in s after the first sample that the user picked, of the three pulses, and their error.
+    pub picks_s: [Option<f64>; 3],
+    pub pick_error_s: Option<f64>,
 }
 
 /// Titles of the columns, in the order of [`ListColumns`].
-const TITLES: [&[&str]; 6] = [
+const TITLES: [&[&str]; 10] = [
     &["file", "record", "recording"],
     &["shot", "segment"],
     &["case", "oil", "section"],
     &["speed", "speed m s", "v0", "velocity"],
     &["speed error", "speed error m s", "error"],
     &["counts", "count", "use"],
+    &["incident pick", "incident pick s"],
+    &["wall pick", "wall pick s"],
+    &["reflected pick", "reflected pick s"],
+    &["pick error", "pick error s"],
 ];
 
-/// Places of file, shot, case, speed, its error and whether a shot counts.
 struct ListColumns {
-    places: [Option<usize>; 6],
+    places: [Option<usize>; 10],
     decimal_comma: bool,
 }
 
@@ -49,7 +55,7 @@ impl ShotList {
     ///
     /// # Errors
     /// [`MeasureError::List`] with the line.
-    pub fn parse(text: &str) -> Result<Self, MeasureError> {
+    pub fn parse(text: &str) -> Result<Self> {
         let text = text.trim_start_matches('\u{feff}');
         let mut titles = text.lines().map(str::trim);
         let titles = titles.find(|line| !line.is_empty() && !line.starts_with('#'));
@@ -91,7 +97,6 @@ impl ShotList {
         self.find(file, shot)?.case.as_deref()
     }
 
-    /// The first line about a shot.
     pub(crate) fn find(&self, file: &Path, shot: Option<u64>) -> Option<&ListEntry> {
         let lines = self.by_name.get(file.file_name()?)?;
         let mut entries = lines.iter().filter_map(|line| self.entries.get(*line));
@@ -114,7 +119,6 @@ impl ShotList {
     }
 }
 
-/// Most names in a message.
 const SHOWN: usize = 6;
 
 impl ListEntry {
@@ -144,23 +148,26 @@ impl ListEntry {
     }
 }
 
-/// Whether a title is that of speeds and names a unit that is not m/s.
+/// Whether a title is that of speeds or picks and names a unit that is not m/s or s.
 fn in_other_unit(title: &str) -> bool {
     let title = title.to_lowercase();
-    let of_speed = ["speed", "velocity", "v0", "error"];
+    let quantities = ["speed", "velocity", "v0", "error", "pick"];
     let Some((name, unit)) = title.split_once(['(', '[']) else {
         return false;
     };
     let unit = unit.trim_end_matches([')', ']']).replace(' ', "");
-    let usual = ["m/s", "ms^-1", "ms-1", "m·s^-1", "m·s⁻¹", "ms⁻¹"];
-    of_speed.iter().any(|word| name.contains(word)) && !usual.contains(&unit.as_str())
+    let usual = match name.contains("pick") {
+        true => &["s"][..],
+        false => &["m/s", "ms^-1", "ms-1", "m·s^-1", "m·s⁻¹", "ms⁻¹"],
+    };
+    quantities.iter().any(|word| name.contains(word)) && !usual.contains(&unit.as_str())
 }
 
 impl ListColumns {
-    fn new(titles: &StringRecord, decimal_comma: bool) -> Result<Self, MeasureError> {
+    fn new(titles: &StringRecord, decimal_comma: bool) -> Result<Self> {
         if let Some(title) = titles.iter().find(|title| in_other_unit(title)) {
             return Err(MeasureError::List(format!(
-                "the column {title:?} has another unit: speeds and their errors are in m/s"
+                "the column {title:?} has another unit: speeds and their errors are in m/s, picks in s"
             )));
         }
         let plain = |title: &str| {
@@ -171,17 +178,15 @@ impl ListColumns {
         let place = |names: &[&str]| titles.iter().position(|title| names.contains(&&**title));
         let places = TITLES.map(place);
         let detail = "the first line must name the columns: file, and any of shot, case, speed, speed error, \
-             counts";
+             counts, incident pick, wall pick, reflected pick, pick error";
         let no_file = || MeasureError::List(detail.to_owned());
         places[0].ok_or_else(no_file)?;
         Ok(Self { places, decimal_comma })
     }
 
-    fn entry(&self, row: &StringRecord, line: u64) -> Result<ListEntry, MeasureError> {
-        let [file, shot, case, speed, error, counts] = self.places.map(|column| {
-            let text = row.get(column?);
-            text.filter(|text| !text.is_empty())
-        });
+    fn entry(&self, row: &StringRecord, line: u64) -> Result<ListEntry> {
+        let [file, shot, case, speed, error, counts, picks @ .., pick_error] =
+            self.places.map(|column| row.get(column?).filter(|text| !text.is_empty()));
         let wrong =
             |text: &str, what| MeasureError::List(format!("line {line}: {text:?} is no {what}"));
         let value = |text: Option<&str>, what, least: f64| {
@@ -196,8 +201,12 @@ impl ListColumns {
             "no" | "n" | "false" | "0" => Ok(false),
             _ => Err(wrong(text, "yes or no")),
         };
+        let pick = |text| value(text, "time in s after the first sample", 0.0);
+        let [incident, wall, reflected] = picks;
         Ok(ListEntry {
             line,
+            picks_s: [pick(incident)?, pick(wall)?, pick(reflected)?],
+            pick_error_s: value(pick_error, "error of a pick in s", 0.0)?,
             speed_m_s: value(speed, "speed in m/s above 0", f64::MIN_POSITIVE)?,
             file: file.ok_or_else(no_file)?.to_owned(),
             shot: shot.map(number).transpose()?,

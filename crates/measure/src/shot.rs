@@ -1,12 +1,13 @@
 //! One measured shot.
 
+use crate::Options;
+use crate::error::Result;
 use crate::records::Record;
 use crate::run::{stated_bandwidth, stated_high_pass_hz};
 use crate::signal::{
-    Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, PulseKind, QualityFlag,
-    SignalOptions,
+    Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, Picked, Picks, PulseKind,
+    QualityFlag, SignalOptions,
 };
-use crate::{MeasureError, Options};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -29,7 +30,7 @@ pub struct Shot {
     /// Time between samples in s.
     pub interval_s: f64,
     /// Times of flight, heights, widths; or why there are none.
-    pub flight: Result<Flight, MeasureError>,
+    pub flight: Result<Flight>,
     /// What is doubtful.
     pub doubts: Vec<QualityFlag>,
     /// Whether its recorder waited for a trigger in vain.
@@ -107,6 +108,37 @@ impl Shot {
         self.excluded = entry.is_some_and(|entry| entry.counts == Some(false));
         if let Some(case) = entry.and_then(|entry| entry.case.clone()) {
             self.case = case;
+        }
+        if let Some(entry) = entry.filter(|entry| entry.picks_s.iter().any(Option::is_some)) {
+            self.pick_by_hand(entry.picks_s, entry.pick_error_s.unwrap_or(self.interval_s));
+        }
+    }
+
+    /// Takes over times that the user picked, and drops what was doubtful about these pulses.
+    fn pick_by_hand(&mut self, times_s: [Option<f64>; 3], sigma_s: f64) {
+        let found = self.flight.as_ref().ok();
+        let interval_error = found.map_or(0.0, |flight| flight.interval_error);
+        let unknown = Picks {
+            incident: Picked::UNKNOWN,
+            wall: Picked::UNKNOWN,
+            reflected: None,
+            competing: [None; 3],
+        };
+        let mut picks = found.map_or(unknown, |flight| flight.picks);
+        for (kind, time_s) in PulseKind::ALL.into_iter().zip(times_s) {
+            let Some(time_s) = time_s else { continue };
+            let own = picks.pulse(kind).unwrap_or(Picked::UNKNOWN);
+            picks.set(kind, own.by_fit(time_s, sigma_s, None));
+            picks.competing[kind as usize] = None;
+            self.doubts.retain(|flag| flag.pulse() != Some(kind));
+            self.doubts.push(QualityFlag::ByHand(kind));
+        }
+        if times_s[0].and(times_s[1]).is_some() {
+            let of_order = [QualityFlag::Order, QualityFlag::Unidentified];
+            self.doubts.retain(|flag| !of_order.contains(flag));
+        }
+        if picks.incident.time_s.is_finite() && picks.wall.time_s.is_finite() {
+            self.flight = Ok(picks.flight().with_interval_error(interval_error));
         }
     }
 
@@ -207,7 +239,6 @@ impl Example {
     }
 }
 
-/// Whether a gap is within a width and a half of a pulse's time.
 fn lies_in(gap: &Range<usize>, flight: &Flight, record: &Record) -> bool {
     let pulses = PulseKind::ALL.map(|kind| flight.picks.pulse(kind));
     pulses.into_iter().flatten().any(|pulse| {

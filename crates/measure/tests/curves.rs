@@ -443,3 +443,32 @@ fn lines_and_shots_that_do_not_find_each_other_are_told() {
     assert_eq!(reported[1], "line 4: dry-0.5.h5 has no shot 9");
     assert_eq!(reported[2], "line 5: no.h5 is none of the files given (dry-0.5.h5)");
 }
+
+#[test]
+fn picks_by_hand_replace_those_of_the_program_and_make_shots_count() {
+    let folder = folder("by-hand");
+    let path = folder.join("series.h5");
+    let mut writer = SeriesWriter::create(&path, &info("dry", &[])).unwrap();
+    push(&mut writer, 0, 0.5, &samples(700.0, 9000.0, 0));
+    // Too high for the converter, and noise alone.
+    push(&mut writer, 1, 0.5, &samples(700.0, 40_000.0, 1));
+    push(&mut writer, 2, 0.5, &samples(700.0, 0.0, 2));
+    writer.finish().unwrap();
+    let text = "file,shot,incident pick,wall pick,pick error\n\
+                series.h5,0,,1.2e-3,1e-6\nseries.h5,1,5e-4,1.2e-3,\nseries.h5,2,5e-4,1.2e-3,\n";
+    let list = Some(ShotList::parse(text).unwrap());
+    let measured = measure(&[path], &Options { list, ..Options::default() }, &());
+    let flights: Vec<&Flight> =
+        measured.shots.iter().map(|shot| shot.flight.as_ref().unwrap()).collect();
+    assert_eq!(flights[0].picks.wall.time_s, 1.2e-3);
+    assert_eq!(flights[0].picks.wall.sigma_s, 1e-6);
+    assert!((flights[0].picks.incident.time_s - 5e-4).abs() < 1e-6, "the program's own");
+    for flight in &flights[1..] {
+        assert!((flight.incident_s.value - 7e-4).abs() < 1e-12);
+        assert!((flight.incident_s.sigma - 2.0_f64.sqrt() * 1e-6).abs() < 1e-12, "of a sample");
+    }
+    for shot in &measured.shots {
+        assert_eq!(shot.reasons(false), Vec::<&str>::new(), "{}", shot.flags());
+        assert!(shot.flags().contains("wall pulse picked by hand"), "{}", shot.flags());
+    }
+}

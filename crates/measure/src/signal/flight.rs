@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::signal::drift::Detrended;
 use crate::signal::find::conditioned_pulses;
 use crate::signal::pick::pick;
@@ -33,7 +33,7 @@ pub struct Measured {
     /// Its pulses and quality flags.
     pub found: Found,
     /// Times of flight, or why there are none.
-    pub flight: Result<Flight, MeasureError>,
+    pub flight: Result<Flight>,
 }
 
 /// Finds and picks the pulses of one shot.
@@ -45,7 +45,7 @@ pub fn measure(
     channels: Channels<'_>,
     interval_s: f64,
     options: &SignalOptions,
-) -> Result<Measured, MeasureError> {
+) -> Result<Measured> {
     MeasureError::positive("sampling interval in s", interval_s)?;
     let find = &options.find;
     let polarities = [find.polarity, find.wall_polarity];
@@ -110,7 +110,6 @@ fn drift(found: &Found, channels: &[Cow<'_, [f64]>], which: usize) -> Option<Det
     Detrended::new(&channels[which], &pulses, time as f64)
 }
 
-/// Picks with what their baselines leave open.
 fn with_drift(mut picks: Picks, drifts: &[Option<Detrended>], interval_s: f64) -> Picks {
     let last = drifts.len() - 1;
     let widen = |pick: &mut Picked, which: usize| {
@@ -132,7 +131,7 @@ impl SignalOptions {
         samples: &'a [f64],
         interval_s: f64,
         polarity: Polarity,
-    ) -> Result<Cow<'a, [f64]>, MeasureError> {
+    ) -> Result<Cow<'a, [f64]>> {
         let mut samples = Cow::Borrowed(samples);
         if let Some(time_constant_s) = self.high_pass_s {
             let offset = normalisation(&samples, polarity)?.baseline.offset;
@@ -240,11 +239,7 @@ impl Flight {
             true => (pulse, other.picked),
             false => (other.picked, pulse),
         };
-        match kind {
-            PulseKind::Incident => picks.incident = most,
-            PulseKind::Wall => picks.wall = most,
-            PulseKind::Reflected => picks.reflected = Some(most),
-        }
+        picks.set(kind, most);
         let value = lower.value.abs();
         let lower = Estimate { value, ..lower };
         picks.competing[kind as usize] = Some(CompetingPick { picked, lower });
@@ -255,6 +250,14 @@ impl Flight {
 impl Picks {
     pub(crate) fn pulse(&self, kind: PulseKind) -> Option<Picked> {
         [Some(self.incident), Some(self.wall), self.reflected][kind as usize]
+    }
+
+    pub(crate) fn set(&mut self, kind: PulseKind, picked: Picked) {
+        match kind {
+            PulseKind::Incident => self.incident = picked,
+            PulseKind::Wall => self.wall = picked,
+            PulseKind::Reflected => self.reflected = Some(picked),
+        }
     }
 
     /// Times of flight and height ratios from the three pulses.

@@ -75,3 +75,15 @@ fn a_list_excludes_shots_by_yes_and_no() {
     let wrong = ShotList::parse("file,counts\na.csv,perhaps\n");
     assert!(matches!(wrong, Err(MeasureError::List(ref why)) if why.contains("yes or no")));
 }
+
+#[test]
+fn a_list_has_times_that_were_picked_by_hand() {
+    let text = "file;wall pick (s);pick error (s)\na.csv;1,2e-3;2e-7\nb.csv;;\n";
+    let list = ShotList::parse(text).unwrap();
+    let entry = |file: &str| list.find(Path::new(file), None).unwrap();
+    assert_eq!(entry("a.csv").picks_s, [None, Some(1.2e-3), None]);
+    assert_eq!(entry("a.csv").pick_error_s, Some(2e-7));
+    assert_eq!(entry("b.csv").picks_s, [None; 3]);
+    let other = ShotList::parse("file,wall pick (us)\na.csv,1200\n");
+    assert!(matches!(other, Err(MeasureError::List(ref why)) if why.contains("picks in s")));
+}

@@ -61,6 +61,8 @@ pub enum QualityFlag {
     Drift,
     /// Fewer than 32 samples before the first pulse: baseline and noise are rough.
     FewQuietSamples,
+    /// The user picked the pulse's time.
+    ByHand(PulseKind),
 }
 
 impl QualityFlag {
@@ -69,9 +71,20 @@ impl QualityFlag {
     pub fn is_grave(&self) -> bool {
         matches!(self, Self::Saturation(_) | Self::Order | Self::Unidentified | Self::FewSamples(_))
     }
-}
 
-impl QualityFlag {
+    /// The pulse whose shape or time it doubts.
+    pub(crate) fn pulse(&self) -> Option<PulseKind> {
+        match self {
+            Self::Saturation(kind)
+            | Self::Missing(kind)
+            | Self::AmbiguousMaximum(kind)
+            | Self::NotPicked(kind)
+            | Self::FewSamples(kind)
+            | Self::ByHand(kind) => Some(*kind),
+            _ => None,
+        }
+    }
+
     /// A short code, without the pulse.
     pub fn code(&self) -> &'static str {
         match self {
@@ -91,6 +104,7 @@ impl QualityFlag {
             Self::Spikes(_) => "spikes",
             Self::Drift => "drift",
             Self::FewQuietSamples => "few-quiet-samples",
+            Self::ByHand(_) => "by-hand",
         }
     }
 }
@@ -115,6 +129,7 @@ impl fmt::Display for QualityFlag {
             Self::Spikes(samples) => write!(f, "{samples} samples of spikes replaced"),
             Self::Drift => f.write_str("drifting baseline subtracted"),
             Self::FewQuietSamples => f.write_str("few quiet samples"),
+            Self::ByHand(kind) => write!(f, "{kind} pulse picked by hand"),
         }
     }
 }
@@ -247,14 +262,12 @@ impl Found {
         all.into_iter().flatten()
     }
 
-    /// Adds quality flags, kept in order and none twice.
     pub(crate) fn flag(&mut self, more: impl IntoIterator<Item = QualityFlag>) {
         self.flags.extend(more);
         self.flags.sort_unstable();
         self.flags.dedup();
     }
 
-    /// Normalisation of the channel that holds this pulse.
     pub(crate) fn normalisation(&self, kind: PulseKind) -> &Normalisation {
         match kind {
             PulseKind::Wall => &self.wall_channel,

@@ -11,10 +11,11 @@ pub(crate) use clipping::clipped_top;
 pub use correlation::delay_by_cross_correlation;
 pub use shape::Shape;
 
-use crate::error::MeasureError;
+use crate::error::{MeasureError, Result};
 use crate::signal::{
     Bandwidth, Channels, DigitiserRange, Estimate, Found, Normalisation, Pulse, PulseKind,
 };
+use correlation::Correlator;
 
 /// How a pulse's time is defined. Bias and spread of each: docs/explanation/picking.md.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -120,12 +121,10 @@ pub struct Picks {
     pub competing: [Option<CompetingPick>; 3],
 }
 
-/// A normalised channel with what a picker knows of it.
 pub(crate) struct ChannelView<'a> {
     samples: &'a [f64],
     normalisation: Normalisation,
     range: Option<DigitiserRange>,
-    /// Whether both sensors are in this channel.
     summed: bool,
     /// Sample of the wall's maximum, for the reflected pulse.
     wall: Option<usize>,
@@ -190,7 +189,6 @@ impl<'a> ChannelView<'a> {
         broad.max(self.normalisation.rounding(pulse.height))
     }
 
-    /// Residual over the noise, if there is noise.
     fn misfit(&self, pulse: &Pulse, residual: f64) -> Option<f64> {
         let noise = self.noise(pulse);
         (noise > 0.0).then(|| residual / noise)
@@ -206,7 +204,7 @@ pub(crate) fn pick(
     found: &Found,
     method: &Method,
     (ranges, amplifier): ([Option<DigitiserRange>; 2], Option<Bandwidth>),
-) -> Result<Picks, MeasureError> {
+) -> Result<Picks> {
     MeasureError::positive("sampling interval in s", interval_s)?;
     method.check()?;
     let need = |pulse: &Option<Pulse>, kind| pulse.ok_or(MeasureError::Missing(kind));
@@ -239,12 +237,24 @@ pub(crate) fn pick(
 
 /// A pulse's maximum by a fit to the samples about it, in samples.
 pub(crate) fn maximum_by_fit(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
-    Picker::Maximum.pick(view, pulse).ok()
+    Picker { method: &Method::Maximum, correlator: None }.pick(view, pulse).ok()
 }
 
 impl Picked {
+    /// What is known of a pulse that was not found.
+    pub(crate) const UNKNOWN: Self = Self {
+        time_s: f64::NAN,
+        sigma_s: f64::NAN,
+        systematic: Systematic { superposition_s: 0.0, shape_s: 0.0 },
+        height: f64::NAN,
+        height_sigma: f64::NAN,
+        width_s: f64::NAN,
+        signal_to_noise: f64::NAN,
+        misfit: None,
+    };
+
     /// The same with a time of another method, of no systematic error.
-    fn by_fit(self, time_s: f64, sigma_s: f64, misfit: Option<f64>) -> Self {
+    pub(crate) fn by_fit(self, time_s: f64, sigma_s: f64, misfit: Option<f64>) -> Self {
         Self { time_s, sigma_s, systematic: Systematic::default(), misfit, ..self }
     }
 
@@ -263,7 +273,7 @@ impl Picked {
 }
 
 impl Method {
-    fn check(&self) -> Result<(), MeasureError> {
+    fn check(&self) -> Result<()> {
         let within = |name, value: f64, low: f64, high: f64, expected| {
             MeasureError::require(value >= low && value <= high, name, value, expected)
         };
@@ -281,60 +291,47 @@ impl Method {
 }
 
 /// A method prepared for one shot; times in samples.
-enum Picker<'a> {
-    Maximum,
-    Onset(f64),
-    Correlation(correlation::Correlator),
-    Matched(&'a Shape, f64),
+struct Picker<'a> {
+    method: &'a Method,
+    correlator: Option<Correlator>,
 }
 
 impl<'a> Picker<'a> {
-    fn new(
-        method: &'a Method,
-        sensor: &ChannelView<'_>,
-        incident: &Pulse,
-    ) -> Result<Self, MeasureError> {
-        Ok(match method {
-            Method::Maximum => Self::Maximum,
-            Method::Onset { fraction } => Self::Onset(*fraction),
-            Method::MatchedShape { shape, width } => Self::Matched(shape, *width),
-            Method::CrossCorrelation => {
-                Self::Correlation(correlation::Correlator::new(sensor, incident)?)
-            }
-        })
+    fn new(method: &'a Method, sensor: &ChannelView<'_>, incident: &Pulse) -> Result<Self> {
+        let correlates = *method == Method::CrossCorrelation;
+        let correlator = correlates.then(|| Correlator::new(sensor, incident)).transpose()?;
+        Ok(Self { method, correlator })
     }
 
-    fn pick(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
+    fn pick(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked> {
         if pulse.clipped.is_some() {
             return self.pick_clipped(view, pulse);
         }
-        match self {
-            Self::Maximum => log_polynomial::pick(view, pulse)
+        match (self.method, &self.correlator) {
+            (_, Some(correlator)) => correlator.pick(view, pulse),
+            (Method::Onset { fraction }, _) => {
+                let top = polynomial::pick_roughly(view, pulse)?;
+                polynomial::pick_onset(view, pulse, *fraction, top)
+            }
+            (Method::MatchedShape { shape, width }, _) => shape::pick(view, pulse, shape, *width),
+            (Method::Maximum | Method::CrossCorrelation, _) => log_polynomial::pick(view, pulse)
                 .map_or_else(|| polynomial::pick_in_noise(view, pulse), Ok),
-            Self::Onset(fraction) => polynomial::pick_onset(
-                view,
-                pulse,
-                *fraction,
-                polynomial::pick_roughly(view, pulse)?,
-            ),
-            Self::Correlation(correlator) => correlator.pick(view, pulse),
-            Self::Matched(shape, width) => shape::pick(view, pulse, shape, *width),
         }
     }
 
-    fn pick_clipped(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked, MeasureError> {
+    fn pick_clipped(&self, view: &ChannelView<'_>, pulse: &Pulse) -> Result<Picked> {
         let none = |what| MeasureError::NoPick(pulse.kind, what);
         let top = log_polynomial::pick_from_flanks(view, pulse);
         let top =
             top.ok_or_else(|| none("maximum that follows from its flanks, clipped as it is,"))?;
-        match self {
-            Self::Maximum => Ok(top),
-            Self::Onset(fraction) => polynomial::pick_onset(view, pulse, *fraction, top),
-            Self::Matched(shape, width) => {
+        match self.method {
+            Method::Maximum => Ok(top),
+            Method::Onset { fraction } => polynomial::pick_onset(view, pulse, *fraction, top),
+            Method::MatchedShape { shape, width } => {
                 let whole = Pulse { height: top.height, width_samples: top.width_s, ..*pulse };
                 shape::pick(view, &whole, shape, *width)
             }
-            Self::Correlation(_) => Err(none("top to correlate, clipped as it is,")),
+            Method::CrossCorrelation => Err(none("top to correlate, clipped as it is,")),
         }
     }
 }
