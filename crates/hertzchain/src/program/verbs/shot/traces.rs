@@ -13,7 +13,6 @@ use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::Animation;
 use hertzchain_sim::{Plan, Shot, shoot};
-use npyz::WriterBuilder;
 use serde_json::Value;
 
 /// The file with everything about the shot.
@@ -199,24 +198,28 @@ fn npy(
     let (positions, rest) = columns.split_at(count.min(columns.len()));
     let (velocities, forces) = rest.split_at(count.min(rest.len()));
     let times = std::slice::from_ref(&trace.time_s);
-    folder.write(&file("time", "s"), &array(times, false)?)?;
-    folder.write(&file("position", "m"), &array(positions, true)?)?;
-    folder.write(&file("velocity", "m/s"), &array(velocities, true)?)?;
-    folder.write(&file("force", "N"), &array(forces, true)?)
+    folder.write(&file("time", "s"), &array(times, false))?;
+    folder.write(&file("position", "m"), &array(positions, true))?;
+    folder.write(&file("velocity", "m/s"), &array(velocities, true))?;
+    folder.write(&file("force", "N"), &array(forces, true))
 }
 
-/// Columns as an array [body][sample], or one column as [sample].
-fn array(columns: &[Vec<f64>], two_dimensional: bool) -> Result<Vec<u8>, Failure> {
-    let samples = columns.first().map_or(0, Vec::len) as u64;
-    let shape = [columns.len() as u64, samples];
-    let shape = if two_dimensional { &shape[..] } else { &shape[1..] };
-    let mut bytes = Vec::new();
-    let failed = |error: std::io::Error| Failure::Ours(format!("NPY: {error}"));
-    let options = npyz::WriteOptions::new().default_dtype().shape(shape);
-    let mut writer = options.writer(&mut bytes).begin_nd().map_err(failed)?;
-    writer.extend(columns.iter().flatten()).map_err(failed)?;
-    writer.finish().map_err(failed)?;
-    Ok(bytes)
+/// Columns as a NumPy array [body][sample], or one column as [sample]: a header of a multiple of 64
+/// bytes, then doubles.
+fn array(columns: &[Vec<f64>], two_dimensional: bool) -> Vec<u8> {
+    let samples = columns.first().map_or(0, Vec::len);
+    let shape = match two_dimensional {
+        true => format!("{}, {samples}", columns.len()),
+        false => format!("{samples},"),
+    };
+    let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape}), }}");
+    let length = (10 + header.len() + 1).next_multiple_of(64) - 10;
+    header += &" ".repeat(length - header.len() - 1);
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((length as u16).to_le_bytes());
+    bytes.extend(header.bytes().chain(*b"\n"));
+    bytes.extend(columns.iter().flatten().flat_map(|value| value.to_le_bytes()));
+    bytes
 }
 
 fn animation(
