@@ -1,7 +1,7 @@
 //! A figure: panels in a grid, as SVG, PNG or PDF.
 
 use crate::chart::{Chart, Prepared, SMALL, x_scale};
-use crate::draw::{Colour, Margins, PT_PER_MM, Point, Rect, Svg};
+use crate::draw::{self, Canvas, Colour, Margins, PT_PER_MM, Point, Rect};
 use crate::files::{self, FigureError};
 use crate::matrix::VerdictMatrix;
 use crate::rig::RigDrawing;
@@ -153,33 +153,17 @@ impl Figure {
 
     /// The picture as SVG with text as text, measured with Noto Sans.
     pub fn svg(&self) -> String {
-        self.drawn(Svg::new())
+        self.written(false)
     }
 
     /// The picture as SVG with text as outlines, which look the same everywhere.
     pub fn svg_outlined(&self) -> String {
-        let mut svg = Svg::new();
-        svg.outlines = true;
-        self.drawn(svg)
+        self.written(true)
     }
 
-    fn drawn(&self, mut svg: Svg) -> String {
-        let panels = self.shared();
-        let page = (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM);
-        let grid = PanelGrid::new(page, self.columns, self.letters, &panels);
-        for (i, panel) in panels.iter().enumerate() {
-            let frame = grid.frame(i);
-            self.heading(&mut svg, panel, i, &frame, &grid);
-            match panel {
-                Panel::Chart(chart) => {
-                    grid.prepared(chart).draw(&mut svg, &frame);
-                }
-                Panel::Matrix(matrix) => matrix.draw(&mut svg, &frame),
-                Panel::Rig(rig) => rig.draw(&mut svg, &frame),
-                Panel::Empty => {}
-            }
-        }
-        svg.finish((self.width_mm, self.height_mm), &self.title, &self.caption)
+    fn written(&self, outlines: bool) -> String {
+        let size = (self.width_mm, self.height_mm);
+        draw::svg(&self.drawn(), size, (&self.title, &self.caption), outlines)
     }
 
     /// The picture as PNG at a resolution in dots per inch; journals ask for 300.
@@ -187,16 +171,34 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Size`] if the size in pixels is zero or too large.
     pub fn png(&self, dpi: f64) -> Result<Vec<u8>, FigureError> {
-        files::png(&self.svg_outlined(), self.width_mm, self.height_mm, dpi)
+        files::png(&self.drawn(), (self.width_mm, self.height_mm), dpi)
     }
 
     /// The picture as PDF, text as outlines.
-    ///
-    /// # Errors
-    /// [`FigureError::Render`] if the renderer refuses the picture: a fault of this crate.
-    pub fn pdf(&self) -> Result<Vec<u8>, FigureError> {
-        let size = (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM);
-        files::pdf(&self.svg_outlined(), size)
+    pub fn pdf(&self) -> Vec<u8> {
+        files::pdf(&self.drawn(), self.page())
+    }
+
+    /// Width and height in points.
+    fn page(&self) -> (f64, f64) {
+        (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM)
+    }
+
+    fn drawn(&self) -> Canvas {
+        let mut canvas = Canvas::default();
+        let panels = self.shared();
+        let grid = PanelGrid::new(self.page(), self.columns, self.letters, &panels);
+        for (i, panel) in panels.iter().enumerate() {
+            let frame = grid.frame(i);
+            self.heading(&mut canvas, panel, i, &frame, &grid);
+            match panel {
+                Panel::Chart(chart) => grid.prepared(chart).draw(&mut canvas, &frame),
+                Panel::Matrix(matrix) => matrix.draw(&mut canvas, &frame),
+                Panel::Rig(rig) => rig.draw(&mut canvas, &frame),
+                Panel::Empty => {}
+            }
+        }
+        canvas
     }
 
     /// The panels, shared axes given one range and one set of labels.
@@ -209,16 +211,23 @@ impl Figure {
         panels
     }
 
-    fn heading(&self, svg: &mut Svg, panel: &Panel, index: usize, frame: &Rect, grid: &PanelGrid) {
+    fn heading(
+        &self,
+        canvas: &mut Canvas,
+        panel: &Panel,
+        index: usize,
+        frame: &Rect,
+        grid: &PanelGrid,
+    ) {
         let mut x = frame.x0;
         let baseline = frame.y0 - grid.above(index) - 4.0;
         if self.letters {
             let letter = TextLine::bold(&panel_letter(index), 8.5);
-            letter.draw(svg, Point::new(x, baseline), Anchor::LEFT, Colour::BLACK);
+            letter.draw(canvas, Point::new(x, baseline), Anchor::LEFT, Colour::BLACK);
             x += letter.width() + 4.0;
         }
         let title = TextLine::new(panel.title(), 8.0).shrunk_to(frame.x1 - x);
-        title.draw(svg, Point::new(x, baseline), Anchor::LEFT, Colour::BLACK);
+        title.draw(canvas, Point::new(x, baseline), Anchor::LEFT, Colour::BLACK);
     }
 }
 

@@ -1,14 +1,13 @@
-//! Files of pictures: PNG, and PDF of one page with paths and images, whose text
-//! must be outlines.
-//!
-//! svg2pdf needs an older resvg and codecs of images that take minutes to build; what this
-//! crate draws is little enough to be written down directly.
+//! Files of pictures with text as outlines: PNG, and PDF of one page.
 
 use std::fmt::Write as _;
 
-use resvg::tiny_skia::{self, PathSegment, Pixmap, Point, Transform};
-use resvg::usvg::{Color, Group, Image, ImageKind, Node, Options, Paint, Path, Tree};
 use thiserror::Error;
+use tiny_skia::{FillRule, FilterQuality, LineJoin, PathBuilder, Pixmap, PixmapPaint};
+use tiny_skia::{Stroke, StrokeDash, Transform};
+
+use crate::draw::{Canvas, Colour, Item, PT_PER_MM, Paint, PathData, Point, Raster, Rect};
+use crate::draw::{Segment, number};
 
 /// A picture could not be rendered as PNG.
 #[derive(Debug, Error)]
@@ -26,9 +25,6 @@ pub enum FigureError {
         /// Dots per inch asked for.
         dpi: f64,
     },
-    /// The renderer did not accept our SVG: a fault of this crate.
-    #[error("the picture could not be rendered: {0}")]
-    Render(String),
     /// The PNG could not be encoded.
     #[error("the picture could not be encoded as PNG")]
     Encode,
@@ -37,27 +33,33 @@ pub enum FigureError {
 /// Longest side of a picture in pixels.
 const LARGEST: f64 = 30_000.0;
 
-/// Renders an SVG of the given size on white paper.
+/// Renders a page of the given size on white paper.
 pub(crate) fn png(
-    svg: &str,
-    width_mm: f64,
-    height_mm: f64,
+    canvas: &Canvas,
+    (width_mm, height_mm): (f64, f64),
     dpi: f64,
 ) -> Result<Vec<u8>, FigureError> {
     let size = FigureError::Size { width_mm, height_mm, dpi };
     let (Some(width), Some(height)) = (pixels(width_mm, dpi), pixels(height_mm, dpi)) else {
         return Err(size);
     };
-    let tree =
-        Tree::from_str(svg, &Options::default()).map_err(|e| FigureError::Render(e.to_string()))?;
     let mut page = Pixmap::new(width, height).ok_or(size)?;
     page.fill(tiny_skia::Color::WHITE);
-    let drawn = tree.size();
-    let (sx, sy) = (width as f32 / drawn.width(), height as f32 / drawn.height());
-    resvg::render(&tree, Transform::from_scale(sx, sy), &mut page.as_mut());
+    let per_point = |pixels: u32, mm: f64| (f64::from(pixels) / (mm * PT_PER_MM)) as f32;
+    let scale = Transform::from_scale(per_point(width, width_mm), per_point(height, height_mm));
+    for item in &canvas.items {
+        match item {
+            Item::Path(data, paint) => render_path(&mut page, data, paint, scale),
+            Item::Text(text) => {
+                render_path(&mut page, &text.outlines(), &Paint::fill(text.colour), scale);
+            }
+            Item::Image(place, raster) => render_image(&mut page, place, raster, scale),
+            Item::Legend(_) | Item::LegendEnd => {}
+        }
+    }
     // The page is opaque white below everything, so alpha can be dropped.
     let rgb: Vec<u8> = page.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-    rgb_png(width as usize, height as usize, &rgb, Some(dpi)).ok_or(FigureError::Encode)
+    rgb_png((width, height), &rgb, dpi).ok_or(FigureError::Encode)
 }
 
 fn pixels(mm: f64, dpi: f64) -> Option<u32> {
@@ -65,135 +67,136 @@ fn pixels(mm: f64, dpi: f64) -> Option<u32> {
     (1.0..=LARGEST).contains(&count).then_some(count as u32)
 }
 
-/// An RGB picture; `dpi` is noted inside if given. Nothing if the data do not
-/// fill the size.
-pub(crate) fn rgb_png(
-    width: usize,
-    height: usize,
-    data: &[u8],
-    dpi: Option<f64>,
-) -> Option<Vec<u8>> {
-    let mut out = Vec::new();
-    let mut encoder = encoder(&mut out, width, height)?;
-    encoder.set_color(png::ColorType::Rgb);
-    if let Some(dpi) = dpi {
-        let per_metre = (dpi / 0.0254).round() as u32;
-        encoder.set_pixel_dims(Some(png::PixelDimensions {
-            xppu: per_metre,
-            yppu: per_metre,
-            unit: png::Unit::Meter,
-        }));
+fn render_path(page: &mut Pixmap, data: &PathData, paint: &Paint, scale: Transform) {
+    let mut path = PathBuilder::new();
+    for segment in &data.0 {
+        let at = |p: Point| (p.x as f32, p.y as f32);
+        match *segment {
+            Segment::Move(p) => path.move_to(at(p).0, at(p).1),
+            Segment::Line(p) => path.line_to(at(p).0, at(p).1),
+            Segment::Quad(c, p) => path.quad_to(at(c).0, at(c).1, at(p).0, at(p).1),
+            Segment::Cubic(a, b, p) => {
+                let [a, b, p] = [a, b, p].map(at);
+                path.cubic_to(a.0, a.1, b.0, b.1, p.0, p.1);
+            }
+            Segment::Close => path.close(),
+        }
     }
-    encoder.write_header().ok()?.write_image_data(data).ok()?;
-    Some(out)
+    let Some(path) = path.finish() else {
+        return;
+    };
+    let ink = |Colour(r, g, b): Colour| {
+        let mut ink = tiny_skia::Paint::default();
+        ink.set_color_rgba8(r, g, b, (255.0 * paint.opacity).round() as u8);
+        ink
+    };
+    if let Some(fill) = paint.fill {
+        page.fill_path(&path, &ink(fill), FillRule::Winding, scale, None);
+    }
+    if let Some(stroke) = paint.stroke {
+        let dash = stroke.dash.iter().map(|length| *length as f32).collect();
+        let look = Stroke {
+            width: stroke.width as f32,
+            line_join: LineJoin::Round,
+            dash: StrokeDash::new(dash, 0.0),
+            ..Stroke::default()
+        };
+        page.stroke_path(&path, &ink(stroke.colour), &look, scale, None);
+    }
 }
 
-/// A picture of up to 256 colours given as RGB triples.
-pub(crate) fn indexed_png(
-    width: usize,
-    height: usize,
-    palette: &[u8],
-    data: &[u8],
-) -> Option<Vec<u8>> {
+fn render_image(page: &mut Pixmap, place: &Rect, raster: &Raster, scale: Transform) {
+    let Some(mut image) = Pixmap::new(raster.width as u32, raster.height as u32) else {
+        return;
+    };
+    for (bytes, pixel) in image.data_mut().chunks_exact_mut(4).zip(&raster.pixels) {
+        let Colour(r, g, b) =
+            raster.palette.get(usize::from(*pixel)).copied().unwrap_or(Colour::WHITE);
+        bytes.copy_from_slice(&[r, g, b, 255]);
+    }
+    let across = (place.width() / raster.width as f64) as f32;
+    let down = (place.height() / raster.height as f64) as f32;
+    let (x, y) = (place.x0 as f32, place.y0 as f32);
+    let onto = Transform::from_row(across, 0.0, 0.0, down, x, y).post_concat(scale);
+    let look = PixmapPaint { quality: FilterQuality::Nearest, ..PixmapPaint::default() };
+    page.draw_pixmap(0, 0, image.as_ref(), &look, onto, None);
+}
+
+fn rgb_png((width, height): (u32, u32), data: &[u8], dpi: f64) -> Option<Vec<u8>> {
     let mut out = Vec::new();
-    let mut encoder = encoder(&mut out, width, height)?;
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_palette(palette);
+    let mut encoder = png::Encoder::new(&mut out, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    let per_metre = (dpi / 0.0254).round() as u32;
+    let unit = png::Unit::Meter;
+    encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit }));
     encoder.write_header().ok()?.write_image_data(data).ok()?;
     Some(out)
 }
 
-fn encoder(
-    out: &mut Vec<u8>,
-    width: usize,
-    height: usize,
-) -> Option<png::Encoder<'_, &mut Vec<u8>>> {
-    let (width, height) = (u32::try_from(width).ok()?, u32::try_from(height).ok()?);
-    let mut encoder = png::Encoder::new(out, width, height);
-    encoder.set_depth(png::BitDepth::Eight);
-    Some(encoder)
+/// A picture with a palette; nothing if memory cannot hold it.
+pub(crate) fn indexed_png(raster: &Raster) -> Option<Vec<u8>> {
+    let mut out = Vec::new();
+    let (width, height) = (u32::try_from(raster.width).ok()?, u32::try_from(raster.height).ok()?);
+    let mut encoder = png::Encoder::new(&mut out, width, height);
+    encoder.set_color(png::ColorType::Indexed);
+    let palette: Vec<u8> = raster.palette.iter().flat_map(|c| [c.0, c.1, c.2]).collect();
+    encoder.set_palette(palette);
+    encoder.write_header().ok()?.write_image_data(&raster.pixels).ok()?;
+    Some(out)
 }
 
-/// Renders an SVG of the given size in points.
-pub(crate) fn pdf(svg: &str, (width, height): (f64, f64)) -> Result<Vec<u8>, FigureError> {
-    let tree =
-        Tree::from_str(svg, &Options::default()).map_err(|e| FigureError::Render(e.to_string()))?;
-    let (across, down) =
-        (width / f64::from(tree.size().width()), height / f64::from(tree.size().height()));
-    let mut page = Page::default();
+/// A PDF of a page of the given size in points.
+pub(crate) fn pdf(canvas: &Canvas, (width, height): (f64, f64)) -> Vec<u8> {
     // The y axis of a PDF points upward.
-    page.write(&format!("{across} 0 0 {} 0 {height} cm\n", -down));
-    page.group(tree.root(), 1.0);
-    Ok(page.file((width, height)))
+    let mut page = Page { content: format!("1 0 0 -1 0 {height} cm\n"), ..Page::default() };
+    for item in &canvas.items {
+        match item {
+            Item::Path(data, paint) => page.path(data, paint),
+            Item::Text(text) => page.path(&text.outlines(), &Paint::fill(text.colour)),
+            Item::Image(place, raster) => page.image(place, raster),
+            Item::Legend(_) | Item::LegendEnd => {}
+        }
+    }
+    page.file((width, height))
 }
 
 /// Content and resources of the page.
 #[derive(Default)]
 struct Page {
     content: String,
-    opacities: Vec<f32>,
+    opacities: Vec<f64>,
     images: Vec<Vec<u8>>,
 }
 
 impl Page {
-    fn write(&mut self, text: &str) {
-        self.content.push_str(text);
+    fn path(&mut self, data: &PathData, paint: &Paint) {
+        let outline = outline(data);
+        self.content += "q ";
+        if paint.opacity < 1.0 {
+            let _ = write!(self.content, "/A{} gs ", self.opacities.len());
+            self.opacities.push(paint.opacity);
+        }
+        if let Some(fill) = paint.fill {
+            let _ = write!(self.content, "{} rg {outline}f ", rgb(fill));
+        }
+        if let Some(stroke) = paint.stroke {
+            let dashes: Vec<String> = stroke.dash.iter().map(f64::to_string).collect();
+            let (colour, width, dashes) = (rgb(stroke.colour), stroke.width, dashes.join(" "));
+            let _ = write!(self.content, "{colour} RG {width} w 1 j [{dashes}] 0 d {outline}S ");
+        }
+        self.content += "Q\n";
     }
 
-    /// Opacity is handed down: no group of this crate with an opacity holds paths that overlap.
-    fn group(&mut self, group: &Group, opacity: f32) {
-        let opacity = opacity * group.opacity().get();
-        for node in group.children() {
-            match node {
-                Node::Group(inner) => self.group(inner, opacity),
-                Node::Path(path) => self.path(path, opacity),
-                Node::Image(image) => self.image(image),
-                Node::Text(_) => {}
-            }
-        }
-    }
-
-    /// Saves the state, and sets transform and opacity.
-    fn open(&mut self, transform: Transform, opacity: f32) {
-        let Transform { sx, kx, ky, sy, tx, ty } = transform;
-        self.write(&format!("q {sx} {ky} {kx} {sy} {tx} {ty} cm "));
-        if opacity < 1.0 {
-            self.write(&format!("/A{} gs ", self.opacities.len()));
-            self.opacities.push(opacity);
-        }
-    }
-
-    fn path(&mut self, path: &Path, opacity: f32) {
-        let outline = outline(path.data());
-        self.open(path.abs_transform(), opacity);
-        if let Some(Paint::Color(colour)) = path.fill().map(|fill| fill.paint()) {
-            self.write(&format!("{} rg {outline}f ", rgb(*colour)));
-        }
-        if let Some(stroke) = path.stroke()
-            && let Paint::Color(colour) = stroke.paint()
-        {
-            let dashes: Vec<String> = (stroke.dasharray().iter().flat_map(|dash| dash.iter()))
-                .map(f32::to_string)
-                .collect();
-            self.write(&format!(
-                "{} RG {} w 1 j [{}] 0 d {outline}S ",
-                rgb(*colour),
-                stroke.width().get(),
-                dashes.join(" ")
-            ));
-        }
-        self.write("Q\n");
-    }
-
-    fn image(&mut self, image: &Image) {
-        let ImageKind::PNG(png) = image.kind() else {
-            return;
-        };
-        if let Some(object) = image_object(png) {
-            let (width, height) = (image.size().width(), image.size().height());
-            self.open(image.abs_transform(), 1.0);
-            let number = self.images.len();
-            self.write(&format!("{width} 0 0 {} 0 {height} cm /I{number} Do Q\n", -height));
+    fn image(&mut self, place: &Rect, raster: &Raster) {
+        if let Some(object) = indexed_png(raster).and_then(|png| image_object(&png, raster)) {
+            let (width, height, bottom) = (place.width(), place.height(), place.y1);
+            let _ = writeln!(
+                self.content,
+                "q {width} 0 0 {} {} {bottom} cm /I{} Do Q",
+                -height,
+                place.x0,
+                self.images.len()
+            );
             self.images.push(object);
         }
     }
@@ -230,64 +233,57 @@ impl Page {
     }
 }
 
-fn rgb(colour: Color) -> String {
-    let share = |part: u8| f32::from(part) / 255.0;
-    let [r, g, b] = [colour.red, colour.green, colour.blue].map(share);
-    format!("{r:.4} {g:.4} {b:.4}")
+fn rgb(Colour(r, g, b): Colour) -> String {
+    let [r, g, b] = [r, g, b].map(|part| number(f64::from(part) / 255.0, 4));
+    format!("{r} {g} {b}")
 }
 
 /// Operators that make a path the current one.
-fn outline(path: &tiny_skia::Path) -> String {
-    let (mut out, mut at) = (String::new(), Point::zero());
-    for segment in path.segments() {
-        let (control, end, operator) = match segment {
-            PathSegment::MoveTo(p) => (None, p, 'm'),
-            PathSegment::LineTo(p) => (None, p, 'l'),
-            PathSegment::QuadTo(c, p) => {
-                let third = |from: Point| {
-                    Point::from_xy(from.x + (c.x - from.x) / 1.5, from.y + (c.y - from.y) / 1.5)
+fn outline(path: &PathData) -> String {
+    let (mut out, mut from) = (String::new(), Point::new(0.0, 0.0));
+    for segment in &path.0 {
+        let (points, operator) = match *segment {
+            Segment::Move(p) => (vec![p], "m "),
+            Segment::Line(p) => (vec![p], "l "),
+            Segment::Quad(c, p) => {
+                // The same curve by cubic control points.
+                let near = |end: Point| {
+                    Point::new(end.x + (c.x - end.x) / 1.5, end.y + (c.y - end.y) / 1.5)
                 };
-                (Some((third(at), third(p))), p, 'c')
+                (vec![near(from), near(p), p], "c ")
             }
-            PathSegment::CubicTo(a, b, p) => (Some((a, b)), p, 'c'),
-            PathSegment::Close => {
-                out.push_str("h ");
-                continue;
-            }
+            Segment::Cubic(a, b, p) => (vec![a, b, p], "c "),
+            Segment::Close => (vec![], "h "),
         };
-        if let Some((a, b)) = control {
-            let _ = write!(out, "{} {} {} {} ", a.x, a.y, b.x, b.y);
+        for value in points.iter().flat_map(|p| [p.x, p.y]) {
+            out += &number(value, 3);
+            out.push(' ');
         }
-        let _ = write!(out, "{} {} {operator} ", end.x, end.y);
-        at = end;
+        out += operator;
+        from = points.last().copied().unwrap_or(from);
     }
     out
 }
 
-/// An image of eight bits a channel, RGB or with a palette; its compressed rows stay as they are.
-fn image_object(png: &[u8]) -> Option<Vec<u8>> {
+/// An image with a palette; its compressed rows stay as they are in a PNG.
+fn image_object(png: &[u8], raster: &Raster) -> Option<Vec<u8>> {
     let number = |from: usize| Some(u32::from_be_bytes(png.get(from..from + 4)?.try_into().ok()?));
-    let (width, height) = (number(16)?, number(20)?);
-    let (mut data, mut palette) = (Vec::new(), String::new());
-    let mut at = 8;
+    let (mut data, mut at) = (Vec::new(), 8);
     while let Some(length) = number(at) {
         let length = length as usize;
-        let body = png.get(at + 8..at + 8 + length)?;
-        match png.get(at + 4..at + 8)? {
-            b"IDAT" => data.extend_from_slice(body),
-            b"PLTE" => palette = body.iter().map(|byte| format!("{byte:02x}")).collect(),
-            _ => {}
+        if png.get(at + 4..at + 8)? == b"IDAT" {
+            data.extend_from_slice(png.get(at + 8..at + 8 + length)?);
         }
         at += length + 12;
     }
-    let (space, channels) = match palette.len() / 6 {
-        0 => ("/DeviceRGB".to_owned(), 3),
-        colours => (format!("[/Indexed /DeviceRGB {} <{palette}>]", colours - 1), 1),
-    };
+    let (width, height) = (raster.width, raster.height);
+    let palette: String =
+        raster.palette.iter().map(|colour| colour.to_string()[1..].to_owned()).collect();
     let keys = format!(
         "/Type /XObject /Subtype /Image /Width {width} /Height {height} /BitsPerComponent 8 \
-         /ColorSpace {space} /Filter /FlateDecode \
-         /DecodeParms <</Predictor 15 /Colors {channels} /BitsPerComponent 8 /Columns {width}>> "
+         /ColorSpace [/Indexed /DeviceRGB {} <{palette}>] /Filter /FlateDecode \
+         /DecodeParms <</Predictor 15 /Colors 1 /BitsPerComponent 8 /Columns {width}>> ",
+        raster.palette.len().saturating_sub(1)
     );
     Some(stream(&keys, &data))
 }

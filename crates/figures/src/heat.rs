@@ -2,8 +2,7 @@
 
 use crate::axis::{Room, Scale, Ticks, ticks};
 use crate::chart::{FRAME, LABEL, Plot, SMALL};
-use crate::draw::{Colour, ColourMap, Paint, PathData, Point, Rect, Svg};
-use crate::files::{indexed_png, rgb_png};
+use crate::draw::{Canvas, Colour, ColourMap, Item, Paint, PathData, Point, Raster, Rect};
 use crate::text::{Anchor, TextLine};
 use std::ops::Range;
 
@@ -122,16 +121,14 @@ impl HeatMap {
     }
 
     /// Draws bar, ticks, numbers and label right of `frame`.
-    pub(crate) fn draw_bar(&self, svg: &mut Svg, frame: &Rect) {
+    pub(crate) fn draw_bar(&self, canvas: &mut Canvas, frame: &Rect) {
         if self.label.is_empty() {
             return;
         }
         let bar = Rect::sized(frame.x1 + GAP, frame.y0, BAR, frame.height());
-        let shades = (0..256).map(|i| self.map.colour(1.0 - f64::from(i) / 255.0));
-        let shades: Vec<u8> = shades.flat_map(|c| [c.0, c.1, c.2]).collect();
-        if let Some(png) = rgb_png(1, 256, &shades, None) {
-            svg.image(&bar, &png);
-        }
+        let palette = (0..=255).map(|i| self.map.colour(1.0 - f64::from(i) / 255.0)).collect();
+        let shades = Raster { width: 1, height: 256, palette, pixels: (0..=255).collect() };
+        canvas.items.push(Item::Image(bar, shades));
         let (found, scale, ink) = (self.bar_ticks(bar.height()), self.scale(), Colour::BLACK);
         let mut path = PathData::new();
         path.rect(&bar);
@@ -139,33 +136,31 @@ impl HeatMap {
             let y = bar.y1 - scale.share(tick.value).unwrap_or(0.0) * bar.height();
             path.segment(Point::new(bar.x1 - 2.5, y), Point::new(bar.x1, y));
             let line = TextLine::new(&tick.label, SMALL);
-            line.draw(svg, Point::new(bar.x1 + 2.5, y), Anchor::LEFT_MIDDLE, ink);
+            line.draw(canvas, Point::new(bar.x1 + 2.5, y), Anchor::LEFT_MIDDLE, ink);
         }
-        svg.path(&path, &Paint::line(ink, FRAME));
+        canvas.path(&path, &Paint::line(ink, FRAME));
         if let Some(factor) = found.factor(SMALL) {
             let at = Point::new(bar.x0, bar.y0 - 0.6 * SMALL);
-            factor.draw(svg, at, Anchor::LEFT, ink);
+            factor.draw(canvas, at, Anchor::LEFT, ink);
         }
         let label = TextLine::new(&self.label, LABEL).shrunk_to(frame.height());
         let x = bar.x1 + 6.0 + found.widest(SMALL) + label.ascent();
-        label.draw_turned(svg, Point::new(x, bar.centre().y), Anchor::CENTRE, ink, 90.0);
+        label.draw_turned(canvas, Point::new(x, bar.centre().y), Anchor::CENTRE, ink, 90.0);
     }
 
     /// Draws the map over the frame of `plot`.
-    pub(crate) fn draw(&self, svg: &mut Svg, plot: &Plot) {
-        let (width, height) = (pixels(plot.frame.width()), pixels(plot.frame.height()));
+    pub(crate) fn draw(&self, canvas: &mut Canvas, plot: &Plot) {
+        let (width, height) = (count(plot.frame.width()), count(plot.frame.height()));
         let columns = cells(&plot.x, self.x, self.columns, width);
         let mut rows = cells(&plot.y, self.y, self.rows, height);
         rows.reverse();
         let (lo, hi) = self.range();
-        let mut data = Vec::with_capacity(width * height);
+        let mut pixels = Vec::with_capacity(width * height);
         for row in &rows {
-            data.extend(columns.iter().map(|column| level(self.strongest(column, row), lo, hi)));
+            pixels.extend(columns.iter().map(|column| level(self.strongest(column, row), lo, hi)));
         }
-        // Encoding fails only if memory cannot hold it; the frame then stays empty.
-        if let Some(png) = indexed_png(width, height, &palette(self.map), &data) {
-            svg.image(&plot.frame, &png);
-        }
+        let map = Raster { width, height, palette: palette(self.map), pixels };
+        canvas.items.push(Item::Image(plot.frame, map));
     }
 
     /// Of all values under a pixel the one of largest size, so that a narrow
@@ -185,7 +180,8 @@ impl HeatMap {
     }
 }
 
-fn pixels(length: f64) -> usize {
+/// Pixels along a length in points.
+fn count(length: f64) -> usize {
     ((length / PIXEL).round() as usize).clamp(1, 20_000)
 }
 
@@ -195,12 +191,11 @@ fn level(value: f64, lo: f64, hi: f64) -> u8 {
 }
 
 /// 255 colours, so that a diverging map has one in the exact middle, and the missing one.
-fn palette(map: ColourMap) -> Vec<u8> {
+fn palette(map: ColourMap) -> Vec<Colour> {
     let share = |i: u8| {
         if i == MISSING { f64::NAN } else { f64::from(i) / 254.0 }
     };
-    let colours = (0..=255).map(|i| map.colour(share(i)));
-    colours.flat_map(|c| [c.0, c.1, c.2]).collect()
+    (0..=255).map(|i| map.colour(share(i))).collect()
 }
 
 /// For each pixel along an axis the grid cells it covers, at least one if any.

@@ -1,6 +1,6 @@
 //! Verdicts on claims under several readings, as a table of symbols.
 
-use crate::draw::{Colour, PT_PER_MM, Paint, PathData, Point, Rect, Svg};
+use crate::draw::{Canvas, Colour, PT_PER_MM, Paint, PathData, Point, Rect};
 use crate::figure::{DOUBLE_COLUMN_MM, Figure, SINGLE_COLUMN_MM};
 use crate::text::{Anchor, LEAST_SIZE, TextLine, wrap};
 
@@ -126,18 +126,18 @@ impl VerdictMatrix {
     }
 
     /// Draws the table, shrunk to fit the frame.
-    pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
+    pub(crate) fn draw(&self, canvas: &mut Canvas, frame: &Rect) {
         let layout = MatrixLayout::new(self, (frame.width() + MARGINS) / PT_PER_MM);
         let (width, height) = layout.size();
         let fit = (frame.width() / width).min(frame.height() / height);
         // The page was made for it up to rounding.
         let scale = if fit > 0.999 { 1.0 } else { fit };
-        svg.open_scaled(Point::new(frame.x0, frame.y0), scale);
-        layout.draw_header(svg, self);
-        let y = layout.draw_rows(svg, self);
-        layout.draw_below(svg, y);
-        layout.draw_key(svg);
-        svg.close();
+        canvas.scaled(Point::new(frame.x0, frame.y0), scale, |canvas| {
+            layout.draw_header(canvas, self);
+            let y = layout.draw_rows(canvas, self);
+            layout.draw_below(canvas, y);
+            layout.draw_key(canvas);
+        });
     }
 }
 
@@ -218,58 +218,58 @@ impl MatrixLayout {
         self.labels + self.cell * (column as f64 + 0.5)
     }
 
-    fn draw_header(&self, svg: &mut Svg, matrix: &VerdictMatrix) {
+    fn draw_header(&self, canvas: &mut Canvas, matrix: &VerdictMatrix) {
         for (i, header) in self.headers.iter().enumerate().take(matrix.columns.len()) {
             let at = Point::new(self.cell_centre(i), self.header - PADDING);
             if self.upright {
-                header.draw(svg, at, Anchor::CENTRE, Colour::BLACK);
+                header.draw(canvas, at, Anchor::CENTRE, Colour::BLACK);
             } else {
-                header.draw_turned(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK, 90.0);
+                header.draw_turned(canvas, at, Anchor::LEFT_MIDDLE, Colour::BLACK, 90.0);
             }
         }
     }
 
     /// Returns where the last row ends.
-    fn draw_rows(&self, svg: &mut Svg, matrix: &VerdictMatrix) -> f64 {
+    fn draw_rows(&self, canvas: &mut Canvas, matrix: &VerdictMatrix) -> f64 {
         let (mut y, mut rules) = (self.header, PathData::new());
         let right = self.labels + self.cell * self.headers.len() as f64;
         for (row, (_, cells)) in matrix.rows.iter().enumerate() {
             let height = self.row_height(row);
-            self.draw_claim(svg, row, y + 0.5 * height);
+            self.draw_claim(canvas, row, y + 0.5 * height);
             for (column, verdict) in cells.iter().enumerate() {
                 let x = self.cell_centre(column) - 0.5 * self.cell;
-                draw_symbol(svg, *verdict, &Rect::sized(x, y, self.cell, height).grown(-0.5));
+                draw_symbol(canvas, *verdict, &Rect::sized(x, y, self.cell, height).grown(-0.5));
             }
             rules.segment(Point::new(0.0, y), Point::new(right, y));
             y += height;
         }
         rules.segment(Point::new(0.0, y), Point::new(right, y));
-        svg.path(&rules, &Paint::line(Colour::grey(190), 0.4));
+        canvas.path(&rules, &Paint::line(Colour::grey(190), 0.4));
         y
     }
 
     /// Claims with one verdict, and remarks.
-    fn draw_below(&self, svg: &mut Svg, mut y: f64) {
+    fn draw_below(&self, canvas: &mut Canvas, mut y: f64) {
         for (verdict, lines) in &self.below {
             let middle = y + PADDING + 0.5 * LEADING;
             let x = if verdict.is_some() { INDENT } else { 0.0 };
             if let Some(verdict) = verdict {
-                draw_symbol(svg, *verdict, &Rect::sized(0.0, middle - 4.5, 11.0, 9.0));
+                draw_symbol(canvas, *verdict, &Rect::sized(0.0, middle - 4.5, 11.0, 9.0));
             }
             for (i, line) in lines.iter().enumerate() {
                 let at = Point::new(x, middle + LEADING * i as f64);
-                line.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
+                line.draw(canvas, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
             }
             y += below_height(lines);
         }
     }
 
-    fn draw_claim(&self, svg: &mut Svg, row: usize, middle: f64) {
+    fn draw_claim(&self, canvas: &mut Canvas, row: usize, middle: f64) {
         let lines = self.claims.get(row).map_or(&[][..], Vec::as_slice);
         let first = middle - 0.5 * LEADING * (lines.len() as f64 - 1.0);
         for (i, line) in lines.iter().enumerate() {
             let at = Point::new(PADDING, first + LEADING * i as f64);
-            line.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
+            line.draw(canvas, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
         }
     }
 
@@ -278,13 +278,13 @@ impl MatrixLayout {
         widths.sum()
     }
 
-    fn draw_key(&self, svg: &mut Svg) {
+    fn draw_key(&self, canvas: &mut Canvas) {
         let middle = self.size().1 - 0.5 * KEY + 3.0;
         let mut x = (self.size().0 - self.key_width()).max(0.0);
         for verdict in Verdict::ALL {
-            draw_symbol(svg, verdict, &Rect::sized(x, middle - 5.0, 12.0, 10.0));
+            draw_symbol(canvas, verdict, &Rect::sized(x, middle - 5.0, 12.0, 10.0));
             let name = TextLine::new(verdict.name(), FONT);
-            name.draw(svg, Point::new(x + 16.0, middle), Anchor::LEFT_MIDDLE, Colour::BLACK);
+            name.draw(canvas, Point::new(x + 16.0, middle), Anchor::LEFT_MIDDLE, Colour::BLACK);
             x += name.width() + KEY_ROOM;
         }
     }
@@ -297,36 +297,34 @@ fn below_height(lines: &[TextLine]) -> f64 {
 
 /// Fills `cell` and draws the symbol of a verdict in its middle, as a path: it does not depend on
 /// what a font offers.
-fn draw_symbol(svg: &mut Svg, verdict: Verdict, cell: &Rect) {
-    svg.rect(cell, &Paint::fill(verdict.colour()));
+fn draw_symbol(canvas: &mut Canvas, verdict: Verdict, cell: &Rect) {
+    canvas.rect(cell, &Paint::fill(verdict.colour()));
     let (c, r) = (cell.centre(), 0.3 * cell.width().min(cell.height()).min(11.0));
     let at = |dx: f64, dy: f64| Point::new(c.x + dx * r, c.y + dy * r);
     let white = Paint::line(Colour::WHITE, 0.42 * r);
     match verdict {
         Verdict::Holds => {
             let tick = [at(-0.9, 0.05), at(-0.25, 0.75), at(0.95, -0.8)];
-            svg.path(PathData::new().polyline(&tick), &white);
+            canvas.path(PathData::new().polyline(&tick), &white);
         }
         Verdict::Fails => {
             let mut cross = PathData::new();
             cross.segment(at(-0.75, -0.75), at(0.75, 0.75));
             cross.segment(at(-0.75, 0.75), at(0.75, -0.75));
-            svg.path(&cross, &white);
+            canvas.path(&cross, &white);
         }
-        Verdict::InPart => draw_half_circle(svg, c, 0.8 * r),
+        Verdict::InPart => draw_half_circle(canvas, c, 0.8 * r),
         Verdict::NotDecidable => {
             let mark = TextLine::bold("?", (2.6 * r).max(LEAST_SIZE));
-            mark.draw(svg, c, Anchor::MIDDLE, Colour::grey(90));
+            mark.draw(canvas, c, Anchor::MIDDLE, Colour::grey(90));
         }
     }
 }
 
-fn draw_half_circle(svg: &mut Svg, c: Point, r: f64) {
+fn draw_half_circle(canvas: &mut Canvas, c: Point, r: f64) {
     let ink = Colour::grey(60);
-    svg.circle(c, r, &Paint::line(ink, 0.25 * r));
-    let mut half = PathData::new();
-    half.move_to(Point::new(c.x, c.y + r)).arc_to(r, false, true, Point::new(c.x, c.y - r)).close();
-    svg.path(&half, &Paint::fill(ink));
+    canvas.circle(c, r, &Paint::line(ink, 0.25 * r));
+    canvas.path(PathData::new().left_half_circle(c, r), &Paint::fill(ink));
 }
 
 #[cfg(test)]

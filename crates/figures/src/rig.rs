@@ -1,7 +1,7 @@
 //! A drawing of the apparatus, as wide as one column: parts have numbers, and a key below names
 //! them.
 
-use crate::draw::{Colour, PT_PER_MM, Paint, PathData, Point, Rect, Svg};
+use crate::draw::{Canvas, Colour, PT_PER_MM, Paint, PathData, Point, Rect};
 use crate::figure::{Figure, SINGLE_COLUMN_MM};
 use crate::text::{Anchor, LEAST_SIZE, TextLine, wrap};
 
@@ -67,7 +67,7 @@ pub struct RigDrawing {
 /// Width of the drawing in points; the beads' centres are at height 0.
 const WIDTH: f64 = SINGLE_COLUMN_MM * PT_PER_MM - 6.0;
 const FONT: f64 = 7.0;
-/// Distance of lines of the key, and of rows of numbers.
+/// Distance of lines of the key.
 const LEADING: f64 = 8.8;
 const INK: Colour = Colour::grey(60);
 const BODY: Colour = Colour(214, 217, 222);
@@ -102,36 +102,39 @@ const BAR: f64 = 9.0;
 impl RigDrawing {
     /// The drawing as a figure of its own, one column wide.
     pub fn figure(self) -> Figure {
-        let (above, below) = self.drawn(&mut Svg::new());
+        let (above, below) = self.drawn(&mut Canvas::default());
         Figure::single_column((above + below + 6.0) / PT_PER_MM).panel(self)
     }
 
     /// Draws the rig, shrunk to fit the frame.
-    pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
-        let (above, below) = self.drawn(&mut Svg::new());
+    pub(crate) fn draw(&self, canvas: &mut Canvas, frame: &Rect) {
+        let (above, below) = self.drawn(&mut Canvas::default());
         let fit = (frame.width() / WIDTH).min(frame.height() / (above + below));
         // The page was made for it up to rounding.
         let scale = if fit > 0.999 { 1.0 } else { fit };
-        svg.open_scaled(Point::new(frame.x0, frame.y0 + scale * above), scale);
-        self.drawn(svg);
-        svg.close();
+        canvas.scaled(Point::new(frame.x0, frame.y0 + scale * above), scale, |canvas| {
+            self.drawn(canvas);
+        });
     }
 
     /// Draws everything and returns the room above and below the beads' centres.
-    fn drawn(&self, svg: &mut Svg) -> (f64, f64) {
+    fn drawn(&self, canvas: &mut Canvas) -> (f64, f64) {
         let drawing = Drawing::new(self);
         let mut labels = Vec::new();
-        drawing.draw_track(svg);
-        drawing.draw_launcher(svg, &mut labels);
-        drawing.draw_row(svg, &mut labels);
-        drawing.draw_far_end(svg, &mut labels);
-        drawing.draw_recorder(svg, &mut labels);
-        drawing.draw_contacts(svg, &mut labels);
+        drawing.draw_track(canvas);
+        drawing.draw_launcher(canvas, &mut labels);
+        drawing.draw_row(canvas, &mut labels);
+        drawing.draw_far_end(canvas, &mut labels);
+        drawing.draw_recorder(canvas, &mut labels);
+        drawing.draw_contacts(canvas, &mut labels);
+        // Numbered from left to right.
+        labels.sort_by(|a, b| a.at.x.total_cmp(&b.at.x));
         let floor = drawing.radius() + 16.0;
-        let [below, above] = draw_numbers(svg, &labels, [floor, ROOF]);
+        draw_numbers(canvas, &labels, true, ROOF);
+        draw_numbers(canvas, &labels, false, floor);
         let mut key = String::new();
         for (i, label) in labels.iter().enumerate() {
-            key += &format!("{}\u{a0}{}; ", i + 1, label.text);
+            key += &format!("{}:\u{a0}{}; ", i + 1, label.text);
         }
         key += "not to scale";
         if self.incline_deg != 0.0 && self.incline_deg.is_finite() {
@@ -140,10 +143,10 @@ impl RigDrawing {
         }
         let lines = wrap(&(key + "."), FONT, WIDTH, 40);
         for (i, line) in lines.iter().enumerate() {
-            let at = Point::new(0.0, below + LEADING * (i as f64 + 1.0));
-            line.draw(svg, at, Anchor::LEFT, Colour::BLACK);
+            let at = Point::new(0.0, floor + LEADING * (i as f64 + 2.0));
+            line.draw(canvas, at, Anchor::LEFT, Colour::BLACK);
         }
-        (-above, below + LEADING * lines.len() as f64 + 3.0)
+        (LEADING - ROOF, floor + LEADING * (lines.len() + 1) as f64 + 3.0)
     }
 
     /// The sensor bead if it is in the row.
@@ -180,29 +183,30 @@ fn label(labels: &mut Vec<PartLabel>, (x, y): (f64, f64), is_above: bool, text: 
     labels.push(PartLabel { at: Point::new(x, y), is_above, text: text.to_owned() });
 }
 
-/// Draws the numbers of all parts below and above the row, a row of numbers further out where two
-/// would touch, and returns where the outermost rows end.
-fn draw_numbers(svg: &mut Svg, labels: &[PartLabel], edges: [f64; 2]) -> [f64; 2] {
-    let mut rows: [Vec<f64>; 2] = Default::default();
-    let mut order: Vec<usize> = (0..labels.len()).collect();
-    order.sort_by(|a, b| labels[*a].at.x.total_cmp(&labels[*b].at.x));
-    for i in order {
-        let PartLabel { at, is_above, .. } = &labels[i];
-        let side = usize::from(*is_above);
-        let out = if *is_above { -LEADING } else { LEADING };
-        let number = TextLine::new(&(i + 1).to_string(), FONT);
-        let half = 0.5 * number.width();
-        let x = at.x.clamp(half, WIDTH - half);
-        let ends = &mut rows[side];
-        let row = ends.iter().position(|end| end + 1.5 <= x - half).unwrap_or(ends.len());
-        ends.resize(ends.len().max(row + 1), 0.0);
-        ends[row] = x + half;
-        let edge = edges[side] + out * row as f64;
-        svg.segment(*at, Point::new(at.x, edge), &Paint::line(INK, 0.45));
-        svg.circle(*at, 0.9, &Paint::fill(INK));
-        number.draw(svg, Point::new(x, edge + 0.5 * out), Anchor::MIDDLE, Colour::BLACK);
+/// Draws the numbers of the parts on one side of the row in a line beyond `edge`, each as close to
+/// its part as its neighbours allow. Parts come from left to right.
+fn draw_numbers(canvas: &mut Canvas, labels: &[PartLabel], above: bool, edge: f64) {
+    let numbers = labels.iter().enumerate().filter(|(_, label)| label.is_above == above);
+    let numbers: Vec<(TextLine, Point)> =
+        numbers.map(|(i, label)| (TextLine::new(&(i + 1).to_string(), FONT), label.at)).collect();
+    // Pushed to the right by those before, then back from the right edge.
+    let (mut places, mut end) = (Vec::new(), 0.0);
+    for (line, at) in &numbers {
+        let x = f64::max(at.x, end + 0.5 * line.width());
+        end = x + 0.5 * line.width() + APART;
+        places.push(x);
     }
-    [edges[0] + LEADING * rows[0].len() as f64, edges[1] - LEADING * rows[1].len() as f64]
+    let mut limit = WIDTH;
+    for ((line, _), x) in numbers.iter().zip(&mut places).rev() {
+        *x = x.min(limit - 0.5 * line.width());
+        limit = *x - 0.5 * line.width() - APART;
+    }
+    let out = if above { -0.5 } else { 0.5 } * LEADING;
+    for ((line, at), x) in numbers.iter().zip(places) {
+        canvas.segment(*at, Point::new(x, edge), &Paint::line(INK, 0.45));
+        canvas.circle(*at, 0.9, &Paint::fill(INK));
+        line.draw(canvas, Point::new(x, edge + out), Anchor::MIDDLE, Colour::BLACK);
+    }
 }
 
 /// Sum of the widths of what there is.
@@ -300,27 +304,27 @@ impl<'a> Drawing<'a> {
     }
 
     /// The air track below everything, with its holes.
-    fn draw_track(&self, svg: &mut Svg) {
+    fn draw_track(&self, canvas: &mut Canvas) {
         let top = self.radius() + 0.3;
         let open = sum(&[(self.rig.far_end == RigEnd::Open, 8.0)]);
         let length = self.face + open - self.left;
-        block(svg, (self.left, top), (length, 4.5), BODY);
+        block(canvas, (self.left, top), (length, 4.5), BODY);
         let mut holes = PathData::new();
         for i in 0..(length / 7.0) as u32 {
             let x = self.left + 4.0 + 7.0 * f64::from(i);
             holes.segment(Point::new(x, top + 1.2), Point::new(x, top + 3.3));
         }
-        svg.path(&holes, &Paint::line(DARK, 0.5));
+        canvas.path(&holes, &Paint::line(DARK, 0.5));
     }
 
     /// Actuator, striker, repositioner, photogate and springs, from left to right.
-    fn draw_launcher(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
+    fn draw_launcher(&self, canvas: &mut Canvas, labels: &mut Vec<PartLabel>) {
         let (rig, r) = (self.rig, self.radius());
         let mut x = self.left + 1.0;
         if !rig.actuator.is_empty() {
-            block(svg, (x, -8.0), (22.0, 16.0), DARK);
-            block(svg, (x + 22.0, -1.4), (ACTUATOR - 25.0, 2.8), BODY);
-            block(svg, (x + ACTUATOR - 3.5, -0.7 * r), (1.8, 1.4 * r), INK);
+            block(canvas, (x, -8.0), (22.0, 16.0), DARK);
+            block(canvas, (x + 22.0, -1.4), (ACTUATOR - 25.0, 2.8), BODY);
+            block(canvas, (x + ACTUATOR - 3.5, -0.7 * r), (1.8, 1.4 * r), INK);
             label(labels, (x + 10.0, -6.0), true, &rig.actuator);
             x += ACTUATOR;
         }
@@ -329,23 +333,23 @@ impl<'a> Drawing<'a> {
         let radius = (r * ratio.unwrap_or(1.0).clamp(0.6, 1.4)).min(6.8);
         let centre = Point::new(x + radius, r - radius);
         if rig.striker_ratio.is_some() {
-            draw_bead(svg, centre, radius);
-            draw_arrow(svg, Point::new(centre.x + radius + 1.2, centre.y), 9.0);
+            draw_bead(canvas, centre, radius);
+            draw_arrow(canvas, Point::new(centre.x + radius + 1.2, centre.y), 9.0);
             let at = (centre.x, centre.y + 0.8 * radius);
             label(labels, at, false, &with_comma("striker", &rig.striker_label));
         }
         if !rig.repositioner.is_empty() {
             let rail = -22.0;
             let arm = [(centre.x, centre.y - radius), (centre.x, rail)];
-            polyline(svg, &arm, &Paint::line(Colour::GREEN, 1.2));
+            polyline(canvas, &arm, &Paint::line(Colour::GREEN, 1.2));
             let ends = [(centre.x - 12.0, rail), (centre.x + 12.0, rail)];
-            polyline(svg, &ends, &Paint::line(INK, 1.0));
+            polyline(canvas, &ends, &Paint::line(INK, 1.0));
             label(labels, (centre.x, rail), true, &rig.repositioner);
         }
         if !rig.photogate.is_empty() {
             let beam = [(self.gate, -r - 3.0), (self.gate, r)];
-            polyline(svg, &beam, &Paint::dashed(Colour::VERMILION, 0.8, &[1.8, 1.3]));
-            block(svg, (self.gate - 2.6, -r - 7.5), (5.2, 4.5), INK);
+            polyline(canvas, &beam, &Paint::dashed(Colour::VERMILION, 0.8, &[1.8, 1.3]));
+            block(canvas, (self.gate - 2.6, -r - 7.5), (5.2, 4.5), INK);
             label(labels, (self.gate, -r - 6.0), true, &rig.photogate);
         }
         if !rig.springs.is_empty() {
@@ -356,29 +360,29 @@ impl<'a> Drawing<'a> {
                     (post + (end - post) / 12.0 * f64::from(i), y + side)
                 };
                 let spring: Vec<(f64, f64)> = (0..=12).map(turn).collect();
-                polyline(svg, &spring, &Paint::line(Colour::BLUE, 0.7));
+                polyline(canvas, &spring, &Paint::line(Colour::BLUE, 0.7));
             }
             label(labels, (self.start - 4.0, -0.72 * r), true, &rig.springs);
         }
     }
 
     /// Oil, beads, sensor bead and elisions.
-    fn draw_row(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
+    fn draw_row(&self, canvas: &mut Canvas, labels: &mut Vec<PartLabel>) {
         let (rig, r) = (self.rig, self.radius());
         for (i, (number, x)) in self.beads.iter().enumerate() {
             let next = self.beads.get(i + 1).map(|(n, _)| *n);
             if rig.is_wet(*number) && next.is_none_or(|n| n == number + 1) {
-                draw_oil(svg, x + r, r);
+                draw_oil(canvas, x + r, r);
             }
         }
         for (number, x) in &self.beads {
             let centre = Point::new(*x, 0.0);
-            draw_bead(svg, centre, r);
+            draw_bead(canvas, centre, r);
             if rig.sensor() == Some(*number) {
                 // Cut in two with a sensor disc between the halves.
                 let disc = Rect::sized(x - 1.3, -0.97 * r, 2.6, 1.94 * r);
-                svg.rect(&disc.grown(0.6), &Paint::fill(Colour::WHITE));
-                svg.rect(&disc, &Paint::fill(PIEZO));
+                canvas.rect(&disc.grown(0.6), &Paint::fill(Colour::WHITE));
+                canvas.rect(&disc, &Paint::fill(PIEZO));
                 let mut text = format!("split bead $n$ = {number}");
                 if !rig.sensor_label.is_empty() {
                     text += &format!(" with {}", rig.sensor_label);
@@ -389,12 +393,12 @@ impl<'a> Drawing<'a> {
             let line = TextLine::new(&number.to_string(), LEAST_SIZE);
             // What rounding of the layout leaves over still fits.
             if line.width() <= NUMBER * self.diameter * 1.001 {
-                line.draw(svg, centre, Anchor::MIDDLE, Colour::BLACK);
+                line.draw(canvas, centre, Anchor::MIDDLE, Colour::BLACK);
             }
         }
         for x in &self.elisions {
             for offset in [-0.55, 0.0, 0.55] {
-                svg.circle(Point::new(x + offset * r, 0.0), 0.75, &Paint::fill(INK));
+                canvas.circle(Point::new(x + offset * r, 0.0), 0.75, &Paint::fill(INK));
             }
         }
         let mut others = self.beads.iter().filter(|(n, _)| Some(*n) != rig.sensor());
@@ -406,30 +410,30 @@ impl<'a> Drawing<'a> {
     }
 
     /// Half-bead, sensor, stop, end structure and the bar apart from them.
-    fn draw_far_end(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
+    fn draw_far_end(&self, canvas: &mut Canvas, labels: &mut Vec<PartLabel>) {
         let (rig, r) = (self.rig, self.radius());
         if rig.far_end == RigEnd::HalfBead {
             let (x, radius) = (self.end + r, r - 0.25);
             let mut half = PathData::new();
-            half.move_to(Point::new(x, radius)).arc_to(radius, false, true, Point::new(x, -radius));
-            svg.path(half.close(), &Paint::fill(STEEL).outlined(INK, 0.5));
+            half.left_half_circle(Point::new(x, 0.0), radius);
+            canvas.path(&half, &Paint::fill(STEEL).outlined(INK, 0.5));
             label(labels, (self.end + 0.45 * r, 0.5 * r), false, "half-bead");
         }
         if rig.far_end != RigEnd::Open {
             if rig.wall_sensor {
                 let disc = Rect::sized(self.face - 3.3, -0.97 * r, 2.8, 1.94 * r);
-                svg.rect(&disc, &Paint::fill(PIEZO));
+                canvas.rect(&disc, &Paint::fill(PIEZO));
                 let name = [rig.sensor_label.as_str(), "wall sensor"];
                 let name = name.into_iter().find(|name| !name.is_empty());
                 label(labels, (self.face - 1.8, 0.8 * r), false, name.unwrap_or_default());
             }
             let mut x = self.face;
             if !rig.stop.is_empty() {
-                block(svg, (x, -r), (STOP, 2.0 * r + 4.8), DARK);
+                block(canvas, (x, -r), (STOP, 2.0 * r + 4.8), DARK);
                 label(labels, (x + 0.6 * STOP, 0.6 * r), false, &rig.stop);
                 x += STOP;
             }
-            block(svg, (x, -18.0), (self.back - x, 22.8 + r), BODY);
+            block(canvas, (x, -18.0), (self.back - x, 22.8 + r), BODY);
             let name = match rig.end_structure.as_str() {
                 "" => "rigid wall",
                 name => name,
@@ -438,20 +442,20 @@ impl<'a> Drawing<'a> {
         }
         if !rig.bar.is_empty() {
             let x = self.back + APART;
-            block(svg, (x, -16.0), (BAR, 20.8 + r), DARK);
+            block(canvas, (x, -16.0), (BAR, 20.8 + r), DARK);
             label(labels, (x + 0.5 * BAR, -13.5), true, &rig.bar);
         }
     }
 
     /// Lines under the row that say which contacts are dry and which wet.
-    fn draw_contacts(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
+    fn draw_contacts(&self, canvas: &mut Canvas, labels: &mut Vec<PartLabel>) {
         let y = self.radius() + 11.0;
         for (first, last, wet) in groups(self.rig) {
             let from = self.contact(first) - 0.22 * self.diameter;
             let to = self.contact(last) + 0.22 * self.diameter;
             let colour = if wet { OIL.mixed(Colour::BLACK, 0.35) } else { INK };
             let corners = [(from, y - 3.0), (from, y), (to, y), (to, y - 3.0)];
-            polyline(svg, &corners, &Paint::line(colour, 0.9));
+            polyline(canvas, &corners, &Paint::line(colour, 0.9));
             let contacts = match first == last {
                 true => format!("contact {first}"),
                 false => format!("contacts {first}–{last}"),
@@ -466,7 +470,7 @@ impl<'a> Drawing<'a> {
     }
 
     /// The recorder above the row and a wire to every sensor.
-    fn draw_recorder(&self, svg: &mut Svg, labels: &mut Vec<PartLabel>) {
+    fn draw_recorder(&self, canvas: &mut Canvas, labels: &mut Vec<PartLabel>) {
         let rig = self.rig;
         let inside = rig.sensor().and_then(|n| self.bead(n));
         let wall = rig.wall_sensor && rig.far_end != RigEnd::Open;
@@ -478,10 +482,10 @@ impl<'a> Drawing<'a> {
         let (middle, y) = (0.5 * (first + last), RECORDER + 5.0);
         for x in &ends {
             let wire = [(*x, -0.97 * self.radius()), (*x, y), (middle, y)];
-            polyline(svg, &wire, &Paint::line(PIEZO, 0.8));
+            polyline(canvas, &wire, &Paint::line(PIEZO, 0.8));
         }
         let case = Rect::sized(middle - 9.0, RECORDER, 18.0, 10.0);
-        svg.rect(&case, &Paint::fill(Colour::WHITE).outlined(PIEZO, 0.8));
+        canvas.rect(&case, &Paint::fill(Colour::WHITE).outlined(PIEZO, 0.8));
         label(labels, (middle, RECORDER + 3.0), true, &rig.recorder);
     }
 }
@@ -491,36 +495,40 @@ fn with_comma(text: &str, other: &str) -> String {
     if other.is_empty() { text.to_owned() } else { format!("{text}, {other}") }
 }
 
-fn block(svg: &mut Svg, (x, y): (f64, f64), (width, height): (f64, f64), colour: Colour) {
-    svg.rect(&Rect::sized(x, y, width, height), &Paint::fill(colour).outlined(INK, 0.5));
+fn block(canvas: &mut Canvas, (x, y): (f64, f64), (width, height): (f64, f64), colour: Colour) {
+    canvas.rect(&Rect::sized(x, y, width, height), &Paint::fill(colour).outlined(INK, 0.5));
 }
 
-fn polyline(svg: &mut Svg, points: &[(f64, f64)], paint: &Paint) {
+fn polyline(canvas: &mut Canvas, points: &[(f64, f64)], paint: &Paint) {
     let points: Vec<Point> = points.iter().map(|(x, y)| Point::new(*x, *y)).collect();
-    svg.path(PathData::new().polyline(&points), paint);
+    canvas.path(PathData::new().polyline(&points), paint);
 }
 
-fn draw_bead(svg: &mut Svg, centre: Point, radius: f64) {
-    svg.circle(centre, radius - 0.25, &Paint::fill(STEEL).outlined(INK, 0.5));
+fn draw_bead(canvas: &mut Canvas, centre: Point, radius: f64) {
+    canvas.circle(centre, radius - 0.25, &Paint::fill(STEEL).outlined(INK, 0.5));
 }
 
 /// A meniscus around the contact of two balls at `x`: waisted, widest where it wets them.
-fn draw_oil(svg: &mut Svg, x: f64, radius: f64) {
+fn draw_oil(canvas: &mut Canvas, x: f64, radius: f64) {
     let half_height = 0.62 * radius;
     let wetted = radius - (radius * radius - half_height * half_height).sqrt();
     let (at, waist) = (|dx, y| Point::new(x + dx, y), 0.55 * half_height);
     let mut path = PathData::new();
     path.move_to(at(-wetted, -half_height)).quad_to(at(0.0, -waist), at(wetted, -half_height));
     path.line_to(at(wetted, half_height)).quad_to(at(0.0, waist), at(-wetted, half_height));
-    svg.path(path.close(), &Paint::fill(OIL));
+    canvas.path(path.close(), &Paint::fill(OIL));
 }
 
-fn draw_arrow(svg: &mut Svg, from: Point, length: f64) {
+fn draw_arrow(canvas: &mut Canvas, from: Point, length: f64) {
     let tip = from.x + length;
-    polyline(svg, &[(from.x, from.y), (tip - 2.5, from.y)], &Paint::line(Colour::VERMILION, 1.1));
+    polyline(
+        canvas,
+        &[(from.x, from.y), (tip - 2.5, from.y)],
+        &Paint::line(Colour::VERMILION, 1.1),
+    );
     let corners = [(tip, 0.0), (tip - 4.2, -2.2), (tip - 4.2, 2.2)];
     let corners = corners.map(|(x, dy)| Point::new(x, from.y + dy));
-    svg.path(PathData::new().polygon(&corners), &Paint::fill(Colour::VERMILION));
+    canvas.path(PathData::new().polygon(&corners), &Paint::fill(Colour::VERMILION));
 }
 
 /// Runs of neighbouring beads to draw if there is room for `capacity` beads: all of them, or

@@ -65,15 +65,15 @@ fn a_reproduction_writes_all_its_tables_and_figures_and_is_legible_in_a_column()
     let mut computed = reproduce(&coarse, &Silent).unwrap();
     for (name, figure) in pictures(&mut computed, 3) {
         assert_eq!(covered(&figure.svg()).1, 0, "{name}: a legend hides data");
-        let (smallest, width_mm) = smallest_type(&figure.svg_outlined());
-        // Scales of some 0.006 are written with six decimals, page sizes with two.
+        let (smallest, width_mm) = smallest_type(&figure.svg());
+        // Page sizes are written with two decimals.
         assert!(smallest > 6.0 - 5e-3, "{name}: type of {smallest} points");
         assert_eq!(width_mm, 85.0, "{name} is not as wide as a column");
         assert!(figure.caption_text().len() > 40, "{name} has no caption");
     }
     // A scan in which every switch moves something takes two columns at most.
     let (_, wide) = pictures(&mut computed, 100).pop().unwrap();
-    let (smallest, width_mm) = smallest_type(&wide.svg_outlined());
+    let (smallest, width_mm) = smallest_type(&wide.svg());
     assert!(smallest > 6.0 - 5e-3 && width_mm == 175.0, "{width_mm} mm");
     assert!(wide.caption_text().contains("† Not decidable"));
     computed.scan = None;

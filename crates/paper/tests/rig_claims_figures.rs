@@ -7,8 +7,7 @@ use hertzchain_paper::rig_claims::{RigClaims, RigDesign, TriedRig, observe};
 
 /// Lines, ticks and markers: a path may have many.
 fn marks(svg: &str) -> usize {
-    let (_, body) = svg.split_once("</defs>").unwrap();
-    let paths = body.split("<path d=\"").skip(1);
+    let paths = svg.split("<path d=\"").skip(1);
     let path = |rest: &str| rest.split_once('"').unwrap().0.matches('M').count();
     paths.map(path).sum()
 }

@@ -2,36 +2,36 @@
 
 use super::{FRAME, LABEL, Plot, Prepared, SMALL, TICK, reference, strokes};
 use crate::axis::{Scale, Ticks};
-use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg};
+use crate::draw::{Canvas, Colour, Paint, PathData, Point, Rect};
 use crate::text::{Anchor, TextLine};
 
 impl Prepared<'_> {
     /// Draws everything: the data inside `frame`, the labels around it.
-    pub(crate) fn draw(&self, svg: &mut Svg, frame: &Rect) {
+    pub(crate) fn draw(&self, canvas: &mut Canvas, frame: &Rect) {
         let chart = self.chart;
         let plot = Plot { frame: *frame, x: self.x, y: self.y };
         if let Some(map) = &chart.heat {
-            map.draw(svg, &plot);
-            map.draw_bar(svg, frame);
+            map.draw(canvas, &plot);
+            map.draw_bar(canvas, frame);
         }
         for (a, b) in chart.references.iter().filter_map(|line| line.ends(&plot)) {
-            svg.segment(a, b, &Paint::dashed(Colour::GREY, 0.6, &[2.2, 1.8]));
+            canvas.segment(a, b, &Paint::dashed(Colour::GREY, 0.6, &[2.2, 1.8]));
         }
-        strokes::draw(svg, chart, &plot);
-        self.draw_frame(svg, frame);
+        strokes::draw(canvas, chart, &plot);
+        self.draw_frame(canvas, frame);
         if !chart.x.unlabelled {
-            self.draw_x_labels(svg, frame);
+            self.draw_x_labels(canvas, frame);
         }
         if !chart.y.unlabelled {
-            self.draw_y_labels(svg, frame);
+            self.draw_y_labels(canvas, frame);
         }
         let bottom = frame.y0 - self.factor_room() - 0.3 * SMALL;
-        self.legend.draw(svg, chart, frame.centre().x, bottom);
-        reference::draw_labels(svg, chart, &plot);
+        self.legend.draw(canvas, chart, frame.centre().x, bottom);
+        reference::draw_labels(canvas, chart, &plot);
     }
 
     /// The frame with inward ticks on all four sides.
-    fn draw_frame(&self, svg: &mut Svg, frame: &Rect) {
+    fn draw_frame(&self, canvas: &mut Canvas, frame: &Rect) {
         let mut path = PathData::new();
         path.rect(frame);
         for (share, length) in self.tick_shares(&self.x, &self.x_ticks) {
@@ -47,9 +47,9 @@ impl Prepared<'_> {
         if self.chart.heat.is_some() {
             // A light rim keeps ticks visible over dark colours.
             let rim = Paint::line(Colour::WHITE, 2.2 * FRAME);
-            svg.path(&path, &rim.opacity(0.7));
+            canvas.path(&path, &rim.opacity(0.7));
         }
-        svg.path(&path, &Paint::line(Colour::BLACK, FRAME));
+        canvas.path(&path, &Paint::line(Colour::BLACK, FRAME));
     }
 
     /// Places of ticks along the axis, as shares, with their lengths.
@@ -61,38 +61,38 @@ impl Prepared<'_> {
         placed.filter(|(share, _)| (0.0..=1.0).contains(share)).collect()
     }
 
-    fn draw_x_labels(&self, svg: &mut Svg, frame: &Rect) {
+    fn draw_x_labels(&self, canvas: &mut Canvas, frame: &Rect) {
         let (small, ink) = (SMALL, Colour::BLACK);
         for tick in &self.x_ticks.major {
             let x = frame.x0 + self.x.share(tick.value).unwrap_or(0.0) * frame.width();
             let at = Point::new(x, frame.y1 + 3.0 + 0.85 * small);
-            TextLine::new(&tick.label, small).draw(svg, at, Anchor::CENTRE, ink);
+            TextLine::new(&tick.label, small).draw(canvas, at, Anchor::CENTRE, ink);
         }
         let mut room = frame.width();
         let label = TextLine::new(&self.chart.x.label, LABEL);
         let y = frame.y1 + 3.0 + 1.35 * small + label.ascent();
         if let Some(factor) = self.x_ticks.factor(small) {
-            factor.draw(svg, Point::new(frame.x1, y), Anchor::RIGHT, ink);
+            factor.draw(canvas, Point::new(frame.x1, y), Anchor::RIGHT, ink);
             room -= 2.0 * factor.width() + small;
         }
         let at = Point::new(frame.centre().x, y);
-        label.shrunk_to(room).draw(svg, at, Anchor::CENTRE, ink);
+        label.shrunk_to(room).draw(canvas, at, Anchor::CENTRE, ink);
     }
 
-    fn draw_y_labels(&self, svg: &mut Svg, frame: &Rect) {
+    fn draw_y_labels(&self, canvas: &mut Canvas, frame: &Rect) {
         let (small, ink) = (SMALL, Colour::BLACK);
         for tick in &self.y_ticks.major {
             let y = frame.y1 - self.y.share(tick.value).unwrap_or(0.0) * frame.height();
             let at = Point::new(frame.x0 - 2.5, y);
-            TextLine::new(&tick.label, small).draw(svg, at, Anchor::RIGHT_MIDDLE, ink);
+            TextLine::new(&tick.label, small).draw(canvas, at, Anchor::RIGHT_MIDDLE, ink);
         }
         if let Some(factor) = self.y_ticks.factor(small) {
             let at = Point::new(frame.x0, frame.y0 - 0.6 * small);
-            factor.draw(svg, at, Anchor::LEFT, ink);
+            factor.draw(canvas, at, Anchor::LEFT, ink);
         }
         let label = TextLine::new(&self.chart.y.label, LABEL);
         let label = label.shrunk_to(1.08 * frame.height());
         let x = frame.x0 - 4.5 - self.y_ticks.widest(small) - label.descent();
-        label.draw_turned(svg, Point::new(x, frame.centre().y), Anchor::CENTRE, ink, 90.0);
+        label.draw_turned(canvas, Point::new(x, frame.centre().y), Anchor::CENTRE, ink, 90.0);
     }
 }

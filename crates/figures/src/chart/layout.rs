@@ -2,7 +2,7 @@
 
 use super::{Axis, Chart, LABEL, Legend, PAD, SMALL, Series, SeriesKind, strokes};
 use crate::axis::{Extent, Room, Scale, Ticks, ticks};
-use crate::draw::{Colour, Margins, Point, Rect, Svg};
+use crate::draw::{Canvas, Colour, Item, Margins, Point, Rect};
 use crate::text::{Anchor, TextLine};
 
 /// Two scales laid over a frame on the page.
@@ -170,23 +170,26 @@ pub(super) struct LegendBox {
     entries: Vec<(usize, TextLine)>,
     notes: Vec<TextLine>,
     columns: usize,
+    /// Length of the sample left of a name: that of a marker, or of a line.
+    sample: f64,
 }
 
-/// Length of the sample left of a name, distances of lines and of columns.
-const SAMPLE: f64 = 2.6 * SMALL;
+/// Distances of lines and of columns.
 const LEADING: f64 = 1.4 * SMALL;
 const GAP: f64 = 1.2 * SMALL;
 
 impl LegendBox {
     /// As few rows as `widest` allows, their columns aligned.
     fn new(chart: &Chart, widest: f64) -> Self {
-        let room = widest - SAMPLE - 1.2 * SMALL;
         let named = chart.series.iter().enumerate();
         let named = named.filter(|(_, s)| chart.legend == Legend::Auto && !s.name.is_empty());
+        let mut lines = named.clone().filter(|(_, s)| s.has_line() || s.is_band());
+        let sample = if lines.next().is_some() { 2.6 * SMALL } else { SMALL };
+        let room = widest - sample - 1.2 * SMALL;
         let entries = named.map(|(i, s)| (i, TextLine::new(&s.name, SMALL).shrunk_to(room)));
         let notes = chart.notes.iter().map(|note| TextLine::new(note, SMALL).shrunk_to(widest));
         let (entries, notes) = (entries.collect(), notes.collect());
-        let mut legend = Self { entries, notes, columns: 1 };
+        let mut legend = Self { entries, notes, columns: 1, sample };
         let most = ((widest + GAP) / (legend.cell() + GAP)).floor().max(1.0) as usize;
         let rows = legend.entries.len().div_ceil(most).max(1);
         legend.columns = legend.entries.len().div_ceil(rows).max(1);
@@ -196,7 +199,7 @@ impl LegendBox {
     /// Width of one entry.
     fn cell(&self) -> f64 {
         let widths = self.entries.iter().map(|(_, name)| name.width());
-        widths.fold(0.0, f64::max) + SAMPLE + SMALL
+        widths.fold(0.0, f64::max) + self.sample + SMALL
     }
 
     pub(super) fn height(&self) -> f64 {
@@ -207,28 +210,29 @@ impl LegendBox {
     }
 
     /// Draws the rows above `bottom`, in the middle of the frame.
-    pub(super) fn draw(&self, svg: &mut Svg, chart: &Chart, middle: f64, bottom: f64) {
+    pub(super) fn draw(&self, canvas: &mut Canvas, chart: &Chart, middle: f64, bottom: f64) {
         let width = self.columns as f64 * (self.cell() + GAP) - GAP;
         let (left, top) = (middle - 0.5 * width, bottom - self.height());
         let row_at = |row: usize| top + 0.25 * SMALL + (row as f64 + 0.5) * LEADING;
         for (i, note) in self.notes.iter().enumerate() {
             let y = row_at(self.entries.len().div_ceil(self.columns) + i);
-            note.draw(svg, Point::new(middle, y), Anchor::MIDDLE, Colour::BLACK);
+            note.draw(canvas, Point::new(middle, y), Anchor::MIDDLE, Colour::BLACK);
         }
         if self.entries.is_empty() {
             return;
         }
         let height = self.height() - self.notes.len() as f64 * LEADING;
-        svg.open_legend(&Rect::sized(left, top, width, height).grown(-0.2 * SMALL));
+        let place = Rect::sized(left, top, width, height).grown(-0.2 * SMALL);
+        canvas.items.push(Item::Legend(place));
         for (number, (index, name)) in self.entries.iter().enumerate() {
             let (column, row) = (number % self.columns, number / self.columns);
             let left = left + 0.2 * SMALL + column as f64 * (self.cell() + GAP);
             let y = row_at(row);
-            let sample = Rect::sized(left, y - 0.4 * SMALL, SAMPLE, 0.8 * SMALL);
-            strokes::draw_sample(svg, chart, *index, &sample);
-            let at = Point::new(left + SAMPLE + 0.5 * SMALL, y);
-            name.draw(svg, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
+            let sample = Rect::sized(left, y - 0.4 * SMALL, self.sample, 0.8 * SMALL);
+            strokes::draw_sample(canvas, chart, *index, &sample);
+            let at = Point::new(left + self.sample + 0.5 * SMALL, y);
+            name.draw(canvas, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
         }
-        svg.close();
+        canvas.items.push(Item::LegendEnd);
     }
 }

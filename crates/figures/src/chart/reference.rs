@@ -1,11 +1,11 @@
 //! Reference lines and their labels, each where it hides least.
 
 use super::{Chart, MARKER, Plot, ReferenceLine, SMALL, strokes};
-use crate::draw::{Colour, Point, Rect, Svg, clip_segment};
+use crate::draw::{Canvas, Colour, Point, Rect, clip_segment};
 use crate::text::{Anchor, TextLine};
 
 /// Draws the labels of all reference lines.
-pub(super) fn draw_labels(svg: &mut Svg, chart: &Chart, plot: &Plot) {
+pub(super) fn draw_labels(canvas: &mut Canvas, chart: &Chart, plot: &Plot) {
     let mut drawn: Vec<Vec<Point>> = Vec::new();
     for series in chart.series.iter().filter(|_| !chart.references.is_empty()) {
         if series.has_line() {
@@ -29,7 +29,7 @@ pub(super) fn draw_labels(svg: &mut Svg, chart: &Chart, plot: &Plot) {
             continue;
         };
         let angle = if place.height() > place.width() { 90.0 } else { 0.0 };
-        text.draw_turned(svg, place.centre(), Anchor::MIDDLE, Colour::grey(70), angle);
+        text.draw_turned(canvas, place.centre(), Anchor::MIDDLE, Colour::grey(70), angle);
         // A text is as bad to cover as many strokes.
         for y in 0..40 {
             let y = place.y0 + place.height() * f64::from(y) / 39.0;

@@ -3,7 +3,7 @@
 
 use super::{Chart, Dash, MARKER, Marker, Plot, Series, SeriesKind};
 use crate::axis::Scale;
-use crate::draw::{Colour, Paint, PathData, Point, Rect, Svg, clip_segment};
+use crate::draw::{Canvas, Colour, Paint, PathData, Point, Rect, clip_segment};
 use std::collections::BTreeSet;
 
 /// Width of a column in points: a pixel at 300 dpi.
@@ -111,7 +111,7 @@ pub(super) fn error_bars(plot: &Plot, series: &Series) -> Vec<(Point, [Option<Po
     bars
 }
 
-fn draw_error_bars(svg: &mut Svg, plot: &Plot, series: &Series, size: f64, colour: Colour) {
+fn draw_error_bars(canvas: &mut Canvas, plot: &Plot, series: &Series, size: f64, colour: Colour) {
     let mut path = PathData::new();
     for (centre, ends, cap) in error_bars(plot, series) {
         for end in ends.into_iter().flatten() {
@@ -128,18 +128,18 @@ fn draw_error_bars(svg: &mut Svg, plot: &Plot, series: &Series, size: f64, colou
             }
         }
     }
-    svg.path(&path, &Paint::line(colour, 0.6));
+    canvas.path(&path, &Paint::line(colour, 0.6));
 }
 
 /// Draws all series: bands below, then lines and points in their order.
-pub(super) fn draw(svg: &mut Svg, chart: &Chart, plot: &Plot) {
+pub(super) fn draw(canvas: &mut Canvas, chart: &Chart, plot: &Plot) {
     for (i, series) in chart.series.iter().enumerate() {
         if let SeriesKind::Band(upper) = &series.kind {
             let mut path = PathData::new();
             for outline in band(plot, series, upper) {
                 path.polygon(&outline);
             }
-            svg.path(&path, &band_paint(chart.colour_of(i)));
+            canvas.path(&path, &band_paint(chart.colour_of(i)));
         }
     }
     for (i, series) in chart.series.iter().enumerate() {
@@ -149,28 +149,28 @@ pub(super) fn draw(svg: &mut Svg, chart: &Chart, plot: &Plot) {
             for piece in pieces(plot, series) {
                 path.polyline(&piece);
             }
-            svg.path(&path, &line_paint(chart, i));
+            canvas.path(&path, &line_paint(chart, i));
         }
         if let Some(marker) = marker_of(series, i) {
-            draw_error_bars(svg, plot, series, 0.7 * MARKER, colour);
-            draw_markers(svg, marker, &centres(plot, series), MARKER, colour);
+            draw_error_bars(canvas, plot, series, 0.7 * MARKER, colour);
+            draw_markers(canvas, marker, &centres(plot, series), MARKER, colour);
         }
     }
 }
 
 /// Draws a sample of a series into a box of a legend.
-pub(super) fn draw_sample(svg: &mut Svg, chart: &Chart, index: usize, place: &Rect) {
+pub(super) fn draw_sample(canvas: &mut Canvas, chart: &Chart, index: usize, place: &Rect) {
     let (series, colour) = (&chart.series[index], chart.colour_of(index));
     let middle = place.centre();
     if series.is_band() {
-        svg.rect(place, &band_paint(colour));
+        canvas.rect(place, &band_paint(colour));
     }
     if series.has_line() {
         let ends = [place.x0, place.x1].map(|x| Point::new(x, middle.y));
-        svg.segment(ends[0], ends[1], &line_paint(chart, index));
+        canvas.segment(ends[0], ends[1], &line_paint(chart, index));
     }
     if let Some(marker) = marker_of(series, index) {
-        draw_markers(svg, marker, &[middle], MARKER, colour);
+        draw_markers(canvas, marker, &[middle], MARKER, colour);
     }
 }
 
@@ -202,7 +202,7 @@ fn marker_of(series: &Series, index: usize) -> Option<Marker> {
 }
 
 /// Draws the same marker at many places.
-fn draw_markers(svg: &mut Svg, marker: Marker, at: &[Point], size: f64, colour: Colour) {
+fn draw_markers(canvas: &mut Canvas, marker: Marker, at: &[Point], size: f64, colour: Colour) {
     let mut path = PathData::new();
     for centre in at {
         outline(&mut path, marker, *centre, size);
@@ -214,7 +214,7 @@ fn draw_markers(svg: &mut Svg, marker: Marker, at: &[Point], size: f64, colour: 
         }
         _ => Paint::fill(colour),
     };
-    svg.path(&path, &paint);
+    canvas.path(&path, &paint);
 }
 
 fn outline(path: &mut PathData, marker: Marker, c: Point, r: f64) {

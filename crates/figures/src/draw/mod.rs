@@ -1,11 +1,13 @@
-//! Drawing surface: points, colours and the SVG writer. One user unit is one
+//! Drawing surface: points, colours, what is drawn, and the SVG writer. One unit is one
 //! typographic point (1/72 inch), so font sizes read as in a journal; y points downward.
 
+mod canvas;
 mod colour;
 mod svg;
 
+pub(crate) use canvas::{Canvas, Item, Paint, PathData, PlacedText, Raster, Segment};
 pub use colour::{Colour, ColourMap};
-pub(crate) use svg::{Paint, PathData, Svg, escape, fmt};
+pub(crate) use svg::{escape, number, svg};
 
 /// Points per millimetre.
 pub(crate) const PT_PER_MM: f64 = 72.0 / 25.4;

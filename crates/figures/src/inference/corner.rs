@@ -19,7 +19,7 @@ pub struct Corner<'a> {
 
 const CELLS: usize = 50;
 /// Cells of a pair: finer, since smoothing widens narrow valleys.
-const FINE: usize = 80;
+const FINE: usize = 160;
 /// Radii, in standard errors, of the ellipses that hold as much of a normal pair.
 const RADII: [f64; 2] = [2.482, 1.515];
 /// Shares of the samples within the shaded areas.

@@ -41,8 +41,9 @@ pub(super) fn joint(
             rows[j][i] += 1.0;
         }
     }
-    // Rows and columns twice: each turn smooths along rows and swaps both.
-    for _ in 0..4 {
+    // Rows and columns in turn: each smooths along rows and swaps both. A pass widens by the
+    // square of one cell, all together by 2 % of the range.
+    for _ in 0..2 * (cells * cells / 2500) {
         let smooth: Vec<Vec<f64>> = rows.iter().map(|row| smoothed(row)).collect();
         rows = (0..cells).map(|i| smooth.iter().map(|row| row[i]).collect()).collect();
     }

@@ -1,15 +1,15 @@
-//! The embedded faces (Noto Sans, Apache licence 2.0) and their outlines.
+//! The embedded faces (Noto Sans, Apache licence 2.0): widths and outlines of their characters.
 
-use std::fmt;
-use std::fmt::Write as _;
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use skrifa::instance::{LocationRef, Size};
-use skrifa::outline::{DrawSettings, OutlinePen};
-use skrifa::{FontRef, MetadataProvider};
+use crate::draw::{Point, Segment};
+
+/// Font units per em, the same for all faces.
+pub(crate) const UNITS_PER_EM: f64 = 2048.0;
 
 /// Which of the embedded faces.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Face {
     Regular,
     Italic,
@@ -25,111 +25,63 @@ impl Face {
             Self::Bold => " font-weight=\"bold\"",
         }
     }
+
+    /// Its letter in the table.
+    fn letter(self) -> char {
+        match self {
+            Self::Regular => 'r',
+            Self::Italic => 'i',
+            Self::Bold => 'b',
+        }
+    }
 }
 
 /// Width of characters in em.
-pub(crate) fn width(style: Face, text: &str) -> f64 {
-    text.chars().map(|c| GlyphId::of(style, c).advance()).sum()
+pub(crate) fn width(face: Face, text: &str) -> f64 {
+    text.chars().map(|c| Glyph::new(face, c).advance).sum()
 }
 
-/// One glyph of one face; also its name inside an SVG.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct GlyphId {
-    style: Face,
-    index: u32,
-}
-
-impl fmt::Display for GlyphId {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let letter = match self.style {
-            Face::Regular => 'r',
-            Face::Italic => 'i',
-            Face::Bold => 'h',
-        };
-        write!(f, "{letter}{}", self.index)
-    }
-}
-
-static REGULAR: LazyLock<FontRef<'static>> = LazyLock::new(|| parse(ttf_noto_sans::REGULAR));
-static ITALIC: LazyLock<FontRef<'static>> = LazyLock::new(|| parse(ttf_noto_sans::ITALIC));
-static BOLD: LazyLock<FontRef<'static>> = LazyLock::new(|| parse(ttf_noto_sans::BOLD));
-
-fn parse(bytes: &'static [u8]) -> FontRef<'static> {
-    FontRef::new(bytes).expect("the embedded font is a valid TrueType file")
-}
-
-fn face(style: Face) -> &'static FontRef<'static> {
-    match style {
-        Face::Regular => &REGULAR,
-        Face::Italic => &ITALIC,
-        Face::Bold => &BOLD,
-    }
-}
-
-/// Font units per em, the same for all embedded faces.
-pub(crate) fn units_per_em() -> f64 {
-    let metrics = REGULAR.metrics(Size::unscaled(), LocationRef::default());
-    f64::from(metrics.units_per_em)
-}
-
-impl GlyphId {
-    /// The glyph of a character; an empty box if the face has none.
-    pub(crate) fn of(style: Face, c: char) -> Self {
-        let found = face(style).charmap().map(c);
-        Self { style, index: found.map_or(0, |g| g.to_u32()) }
-    }
-
+/// One glyph of one face.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Glyph {
     /// Advance width in em.
-    pub(crate) fn advance(self) -> f64 {
-        let metrics = face(self.style).glyph_metrics(Size::unscaled(), LocationRef::default());
-        let units = metrics.advance_width(self.index.into());
-        f64::from(units.unwrap_or(0.0)) / units_per_em()
-    }
-
-    /// Outline in font units, y upward.
-    pub(crate) fn outline(self) -> String {
-        let mut path = Outline::default();
-        let settings = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
-        if let Some(glyph) = face(self.style).outline_glyphs().get(self.index.into()) {
-            let drawn = glyph.draw(settings, &mut path);
-            drawn.expect("the embedded font's outlines are whole");
-        }
-        path.0
-    }
+    pub(crate) advance: f64,
+    outline: &'static str,
 }
 
-#[derive(Default)]
-struct Outline(String);
+/// All glyphs. The table is written by `data/make_glyphs.py`: a parser of fonts takes longer to
+/// build than this whole crate.
+static GLYPHS: LazyLock<HashMap<(char, u32), Glyph>> = LazyLock::new(|| {
+    let glyph = |line: &'static str| {
+        let mut parts = line.splitn(3, ' ');
+        let (name, width, outline) = (parts.next()?, parts.next()?, parts.next()?);
+        let id = (name.chars().next()?, name[1..].parse().ok()?);
+        Some((id, Glyph { advance: width.parse::<f64>().ok()? / UNITS_PER_EM, outline }))
+    };
+    include_str!("../../data/glyphs.txt").lines().filter_map(glyph).collect()
+});
 
-impl Outline {
-    fn push(&mut self, command: char, numbers: &[f32]) {
-        self.0.push(command);
-        for (i, n) in numbers.iter().enumerate() {
-            let gap = if i > 0 { " " } else { "" };
-            write!(self.0, "{gap}{}", n.round()).expect("a String takes any text");
-        }
+impl Glyph {
+    /// Steps of the outline in font units, y upward.
+    pub(crate) fn segments(self) -> impl Iterator<Item = Segment> {
+        let steps = self.outline.split_inclusive(|c: char| c.is_ascii_uppercase());
+        steps.filter_map(|step| {
+            let (numbers, operator) = step.split_at(step.len() - 1);
+            let mut numbers = numbers.split(' ').filter_map(|number| number.parse().ok());
+            let mut point = || Some(Point::new(numbers.next()?, numbers.next()?));
+            Some(match operator {
+                "M" => Segment::Move(point()?),
+                "L" => Segment::Line(point()?),
+                "Q" => Segment::Quad(point()?, point()?),
+                _ => Segment::Close,
+            })
+        })
     }
-}
 
-impl OutlinePen for Outline {
-    fn move_to(&mut self, x: f32, y: f32) {
-        self.push('M', &[x, y]);
-    }
-
-    fn line_to(&mut self, x: f32, y: f32) {
-        self.push('L', &[x, y]);
-    }
-
-    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        self.push('Q', &[x1, y1, x, y]);
-    }
-
-    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        self.push('C', &[x1, y1, x2, y2, x, y]);
-    }
-
-    fn close(&mut self) {
-        self.0.push('Z');
+    /// The glyph of a character; an empty box if the face has none.
+    pub(crate) fn new(face: Face, c: char) -> Self {
+        let found = GLYPHS.get(&(face.letter(), u32::from(c)));
+        *found.unwrap_or_else(|| &GLYPHS[&(face.letter(), 0)])
     }
 }
 

@@ -9,10 +9,8 @@
 mod font;
 mod markup;
 
-pub(crate) use font::GlyphId;
-
-use crate::draw::{Colour, Point, Svg, escape, fmt};
-use font::{Face, units_per_em, width};
+use crate::draw::{Canvas, Colour, Item, PathData, PlacedText, Point, escape};
+use font::{Face, Glyph, UNITS_PER_EM, width};
 use markup::{Script, TextRun, parse};
 
 /// Smallest size of anything that is written, points: what journals ask for.
@@ -148,6 +146,16 @@ impl TextLine {
         self.size
     }
 
+    /// The same in another size, its proportions kept.
+    pub(crate) fn scaled(self, scale: f64) -> Self {
+        Self { size: scale * self.size, ..self }
+    }
+
+    /// Its characters without any style.
+    pub(crate) fn plain(&self) -> &str {
+        &self.plain
+    }
+
     /// From the highest superscript to the lowest descender.
     pub(crate) fn height(&self) -> f64 {
         (self.top_em + self.bottom_em) * self.size
@@ -199,60 +207,28 @@ impl TextLine {
         self
     }
 
-    pub(crate) fn draw(&self, svg: &mut Svg, at: Point, anchor: Anchor, colour: Colour) {
-        self.draw_turned(svg, at, anchor, colour, 0.0);
+    pub(crate) fn draw(&self, canvas: &mut Canvas, at: Point, anchor: Anchor, colour: Colour) {
+        self.draw_turned(canvas, at, anchor, colour, 0.0);
     }
 
     /// Draws turned by `angle_deg` counter-clockwise about `at`.
     pub(crate) fn draw_turned(
         &self,
-        svg: &mut Svg,
+        canvas: &mut Canvas,
         at: Point,
         anchor: Anchor,
         colour: Colour,
         angle_deg: f64,
     ) {
-        if self.plain.trim().is_empty() || self.spans.is_empty() || self.size <= 0.0 {
-            return;
+        if !(self.plain.trim().is_empty() || self.spans.is_empty() || self.size <= 0.0) {
+            let line = self.clone();
+            canvas.items.push(Item::Text(PlacedText { line, at, anchor, colour, angle_deg }));
         }
-        let mut place = String::from("translate(");
-        push_pair(&mut place, at.x, at.y);
-        if angle_deg != 0.0 {
-            place.push_str(") rotate(");
-            fmt(&mut place, -angle_deg);
-        }
-        place.push_str(") translate(");
-        let down = anchor.up * CAP_HEIGHT * self.size;
-        if svg.outlines {
-            push_pair(&mut place, -anchor.across * self.width(), down);
-            self.draw_outlines(svg, place, colour);
-        } else {
-            push_pair(&mut place, 0.0, down);
-            place.push(')');
-            svg.text(&place, colour, &self.plain, &self.live(anchor));
-        }
-    }
-
-    fn draw_outlines(&self, svg: &mut Svg, mut place: String, colour: Colour) {
-        let scale = self.size / units_per_em();
-        place.push_str(&format!(") scale({scale:.6} {:.6})", -scale));
-        svg.open_text(&place, colour, &self.plain);
-        for span in &self.spans {
-            let mut x = span.x;
-            for c in span.text.chars() {
-                let id = GlyphId::of(span.style, c);
-                if !c.is_whitespace() {
-                    svg.glyph(id, || id.outline(), &glyph_transform(span, x));
-                }
-                x += id.advance() * span.scale;
-            }
-        }
-        svg.close();
     }
 
     /// Attributes and content of a `text` element: runs follow each other, so that a viewer
     /// without the font still sets the line as one.
-    fn live(&self, anchor: Anchor) -> String {
+    pub(crate) fn live(&self, anchor: Anchor) -> String {
         let side = match anchor.across {
             share if share < 0.25 => "start",
             share if share > 0.75 => "end",
@@ -277,21 +253,31 @@ impl TextLine {
     }
 }
 
-fn push_pair(out: &mut String, x: f64, y: f64) {
-    fmt(out, x);
-    out.push(' ');
-    fmt(out, y);
-}
-
-/// Where a glyph of a span stands, in font units.
-fn glyph_transform(span: &Span, x: f64) -> String {
-    let mut out = String::from("translate(");
-    push_pair(&mut out, x * units_per_em(), span.up * units_per_em());
-    out.push(')');
-    if span.scale != 1.0 {
-        out.push_str(&format!(" scale({})", span.scale));
+impl PlacedText {
+    /// From the anchor down to the baseline.
+    pub(crate) fn down(&self) -> f64 {
+        self.anchor.up * CAP_HEIGHT * self.line.size
     }
-    out
+
+    /// The text as outlines on the page.
+    pub(crate) fn outlines(&self) -> PathData {
+        let (sin, cos) = self.angle_deg.to_radians().sin_cos();
+        let (left, down) = (-self.anchor.across * self.line.width(), self.down());
+        let mut path = PathData::new();
+        for span in &self.line.spans {
+            let mut start = span.x;
+            for glyph in span.text.chars().map(|c| Glyph::new(span.style, c)) {
+                let at = |p: Point| {
+                    let x = left + self.line.size * (start + span.scale * p.x / UNITS_PER_EM);
+                    let y = down - self.line.size * (span.up + span.scale * p.y / UNITS_PER_EM);
+                    Point::new(self.at.x + x * cos + y * sin, self.at.y + y * cos - x * sin)
+                };
+                path.0.extend(glyph.segments().map(|segment| segment.map(&at)));
+                start += glyph.advance * span.scale;
+            }
+        }
+        path
+    }
 }
 
 /// Breaks at spaces so that no line is wider than `width`; a single word that

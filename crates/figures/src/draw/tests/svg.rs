@@ -2,11 +2,7 @@ use super::*;
 
 #[test]
 fn numbers_keep_two_decimals_and_lose_trailing_zeros() {
-    let written = |v: f64| {
-        let mut s = String::new();
-        fmt(&mut s, v);
-        s
-    };
+    let written = |v: f64| number(v, 2);
     let cases = [(1.0, "1"), (-0.5, "-0.5"), (2.345, "2.35"), (0.001, "0"), (-3.04, "-3.04")];
     for (value, text) in cases {
         assert_eq!(written(value), text);

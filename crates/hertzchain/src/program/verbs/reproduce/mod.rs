@@ -17,6 +17,7 @@ use hertzchain_paper::reproduce::{
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Write as _;
 use std::path::Path;
+use terminal_size::terminal_size_of;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
@@ -51,8 +52,7 @@ fn write(computed: &Reproduction, folder: &mut Folder) -> Result<(), Failure> {
     let figures = figures(computed).map_err(|error| failure(&error))?;
     for (name, figure) in &figures {
         folder.figure(name, figure)?;
-        let pdf = figure.pdf().map_err(|error| Failure::Ours(format!("{name}.pdf: {error}")))?;
-        folder.write(&format!("{name}.pdf"), &pdf)?;
+        folder.write(&format!("{name}.pdf"), &figure.pdf())?;
     }
     folder.write("captions.md", captions(&figures).as_bytes())
 }
@@ -157,9 +157,8 @@ fn plain() -> Table {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
     table.set_content_arrangement(ContentArrangement::Dynamic);
-    if table.width().is_none() {
-        table.set_width(WIDTH);
-    }
+    let terminal = terminal_size_of(std::io::stdout());
+    table.set_width(terminal.map_or(WIDTH, |(width, _)| width.0));
     table
 }
 
