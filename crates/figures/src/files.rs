@@ -177,14 +177,19 @@ impl Page {
             self.opacities.push(paint.opacity);
         }
         if let Some(fill) = paint.fill {
-            let _ = write!(self.content, "{} rg {outline}f ", rgb(fill));
+            let _ = write!(self.content, "{} rg ", rgb(fill));
         }
         if let Some(stroke) = paint.stroke {
             let dashes: Vec<String> = stroke.dash.iter().map(f64::to_string).collect();
             let (colour, width, dashes) = (rgb(stroke.colour), stroke.width, dashes.join(" "));
-            let _ = write!(self.content, "{colour} RG {width} w 1 j [{dashes}] 0 d {outline}S ");
+            let _ = write!(self.content, "{colour} RG {width} w 1 j [{dashes}] 0 d ");
         }
-        self.content += "Q\n";
+        let operator = match (paint.fill, paint.stroke) {
+            (Some(_), Some(_)) => 'B',
+            (Some(_), None) => 'f',
+            (None, _) => 'S',
+        };
+        let _ = writeln!(self.content, "{outline}{operator} Q");
     }
 
     fn image(&mut self, place: &Rect, raster: &Raster) {

@@ -295,7 +295,7 @@ fn residuals(films: &[Film]) -> Chart {
         (Colour::BLUE, Dash::DashDotted),
     ];
     let empty =
-        Chart::new("Time (µs)", "Share of initial energy").title("residual of the budgets").y_log();
+        Chart::new("Time (µs)", "Share of initial energy").title("Residual of the budgets").y_log();
     let looks = looks.into_iter().cycle();
     films.iter().zip(looks).fold(empty, |chart, (film, look)| {
         let missing = film.budgets.iter().map(|b| b.relative_residual().abs());

@@ -175,11 +175,13 @@ fn spreads(evidence: &RigEvidence) -> Figure {
     let mut figure = Figure::double_column(120.0).columns(2).letters();
     for (at, factor) in FACTORS.iter().enumerate() {
         let rigs = one_at_a_time(evidence, at);
+        let (first, rest) = factor.name.split_at(1);
+        let name = first.to_uppercase() + rest;
         let label = match factor.unit {
-            "" => factor.name.to_owned(),
-            unit => format!("{} ({})", factor.name, unit.trim()),
+            "" => name,
+            unit => format!("{name} ({})", unit.trim()),
         };
-        let mut chart = Chart::new(&label, "spread of ToF (ns)").y_log();
+        let mut chart = Chart::new(&label, "Spread of ToF (ns)").y_log();
         chart = chart.y_range(SPREADS_NS.0, SPREADS_NS.1);
         if rigs.iter().all(|(value, _)| *value > 0.0) {
             chart = chart.x_log();
