@@ -1,6 +1,6 @@
 // The page: its state, and what changes it.
 
-import { ask, decoded, newest, start } from "./engine.js";
+import { PATIENCE, ask, cancel, decoded, newest, start } from "./engine.js";
 import { formula, html } from "./charts.js";
 import { copy, csv, figures, packed, pdf, picture, python, save, shell, slug, unpacked } from "./files.js";
 import { Fit } from "./fit.js";
@@ -66,6 +66,8 @@ const check = newest(["check"], async () => {
   queued = null;
   const began = ++asked;
   working(1);
+  // What is computed of an older text may keep all engines busy.
+  const late = setTimeout(() => ["shot", "curve", "reference"].forEach(cancel), PATIENCE);
   try {
     const reply = await ask("check", { verb: "check", text: work.text ?? state.text, edits: work.edits });
     Object.assign(state, { text: reply.text, tree: reply.tree ?? state.tree, mistakes: reply.mistakes });
@@ -76,6 +78,7 @@ const check = newest(["check"], async () => {
     if (work.text !== null) state.text = work.text;
     if (!error.stopped) refuse(error);
   } finally {
+    clearTimeout(late);
     working(-1);
   }
 });

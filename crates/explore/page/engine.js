@@ -48,7 +48,7 @@ export function encoded(buffer) {
 }
 
 /** Longest time that a newer call waits for the one under way, in ms. */
-const PATIENCE = 3000;
+export const PATIENCE = 3000;
 
 /**
  * Runs the newest of many calls: while one is under way only the last that came waits, so that

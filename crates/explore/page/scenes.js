@@ -25,7 +25,7 @@ export const SCENES = [
       },
       {
         view: { curveScale: "log" },
-        text: (state) => `On logarithmic axes the curve is a straight line. Its slope is ${plain(state.curve?.power_law_incident?.exponent, 7)}: the time goes as v^(−1/5), exactly, for any row of spheres without losses.`,
+        text: (state) => `On logarithmic axes the curve is a straight line. Its slope is ${plain(state.curve?.power_law_incident?.exponent, 7)}: the time goes as v^{−1/5}, exactly, for any row of spheres without losses.`,
       },
     ],
     question: "By which factor must the striker be faster for half the time of flight?",
@@ -91,7 +91,7 @@ export const SCENES = [
       },
     ],
     question: "Which of the two losses would you expect to matter more at 0.1 m/s, and which at 2 m/s? Try.",
-    answer: "The viscoelastic share changes slowly with speed, as v^(1/5); the cubic one grows much more quickly. Fast shots are where B shows, slow ones where η does.",
+    answer: "The viscoelastic share changes slowly with speed, as v^{1/5}; the cubic one grows much more quickly. Fast shots are where B shows, slow ones where η does.",
   },
   {
     id: "oil",

@@ -7,6 +7,8 @@ const [BADF, EXIST, INVAL, ISDIR, NOENT, NOSYS, NOTDIR, NOTEMPTY] = [8, 20, 28, 
 const [DEVICE, FOLDER, FILE] = [2, 3, 4];
 /** The one folder that the engine is given: everything is in it. */
 const ROOT = 3;
+/** The program's environment: files in memory can't be locked, and need not be. */
+const ENVIRONMENT = new TextEncoder().encode("HDF5_USE_FILE_LOCKING=FALSE\0");
 /** Time between two reports of progress, in ms. */
 const PACE = 100;
 
@@ -154,8 +156,8 @@ class System {
     return {
       args_sizes_get: none,
       args_get: () => 0,
-      environ_sizes_get: none,
-      environ_get: () => 0,
+      environ_sizes_get: (counted, sized) => this.give(counted, 1) || this.give(sized, ENVIRONMENT.length),
+      environ_get: (list, at) => this.memoryAt(at, ENVIRONMENT.length).set(ENVIRONMENT) ?? this.give(list, at),
       proc_exit: (code) => {
         throw new Exit(code);
       },
