@@ -299,7 +299,8 @@ fn too_long(what: &str, most: u64) -> io::Error {
 /// A text in which control characters but line ends and tabs are written as `\u001b`: those of a
 /// file's name or a title could steer a terminal.
 pub fn without_controls(text: &str) -> Cow<'_, str> {
-    let plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n' | b'\t');
+    // Control characters beyond ASCII begin with the byte c2.
+    let plain = |byte: &u8| matches!(byte, b' '..=b'~' | b'\n' | b'\t' | 0x80..=0xc1 | 0xc3..);
     if text.as_bytes().iter().all(plain) {
         return Cow::Borrowed(text);
     }
