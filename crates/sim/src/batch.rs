@@ -146,7 +146,7 @@ pub struct BatchResult {
 type Planned = Result<(Plan, Vec<Warning>), StudyError>;
 
 /// Rows that one thread plans in sequence: neighbours often share their numbers.
-const NEIGHBOURS: usize = 64;
+const NEIGHBOURS: usize = 256;
 
 /// Plans in memory at a time, in the current rayon pool: enough for each thread that none
 /// waits long for the others at the end.

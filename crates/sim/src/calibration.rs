@@ -47,39 +47,33 @@ const OF_HEIGHTS: f64 = 4.0;
 /// Two computations of a peak that differ by less than this many steps have the same peak.
 const SAME_PEAK: f64 = 1.0;
 
-/// Settings, cheapest first: precision, step in contact times, whether openings are located.
-const SETTINGS: [(Precision, f64, bool); 27] = {
-    use Precision::{Double, Single};
-    [
-        (Single, 0.3, false),
-        (Single, 0.27, false),
-        (Single, 0.24, false),
-        (Single, 0.22, false),
-        (Single, 0.2, false),
-        (Single, 0.18, false),
-        (Single, 0.16, false),
-        (Single, 0.145, false),
-        (Single, 0.13, false),
-        (Single, 0.115, false),
-        (Double, 0.2, false),
-        (Single, 0.1, false),
-        (Double, 0.17, false),
-        (Single, 0.085, false),
-        (Double, 0.15, false),
-        (Double, 0.12, false),
-        (Double, 0.12, true),
-        (Double, 0.1, true),
-        (Double, 0.085, true),
-        (Double, 0.07, true),
-        (Double, 0.057, true),
-        (Double, 0.047, true),
-        (Double, 0.038, true),
-        (Double, 0.03, true),
-        (Double, 0.022, true),
-        (Double, 0.016, true),
-        (Double, 0.011, true),
-    ]
-};
+/// Steps in contact times that are tried: in single precision, in double, and where openings are
+/// located too.
+const SINGLE: [f64; 16] = [
+    0.36, 0.33, 0.3, 0.27, 0.24, 0.22, 0.2, 0.18, 0.16, 0.145, 0.13, 0.115, 0.107, 0.1, 0.092,
+    0.085,
+];
+const DOUBLE: [f64; 5] = [0.2, 0.17, 0.15, 0.135, 0.12];
+const WITH_OPENINGS: [f64; 21] = [
+    0.12, 0.11, 0.1, 0.092, 0.085, 0.077, 0.07, 0.063, 0.057, 0.052, 0.047, 0.042, 0.038, 0.034,
+    0.03, 0.026, 0.022, 0.019, 0.016, 0.0135, 0.011,
+];
+
+/// Settings, cheapest first.
+fn settings() -> Vec<(Setting, Precision)> {
+    let of = |steps: &[f64], precision: Precision, openings: bool| {
+        let setting = |&step: &f64| {
+            let precision = Some(precision);
+            Setting { step, precision, openings, shapes: false, passed: true }
+        };
+        steps.iter().map(setting).map(|setting| (setting, precision)).collect::<Vec<_>>()
+    };
+    let mut all = of(&SINGLE, Precision::Single, false);
+    all.extend(of(&DOUBLE, Precision::Double, false));
+    all.extend(of(&WITH_OPENINGS, Precision::Double, true));
+    all.sort_by(|(a, of_a), (b, of_b)| cost(a, *of_a).total_cmp(&cost(b, *of_b)));
+    all
+}
 
 /// Cost of a step in double precision, of one that locates openings, and of control per shot with
 /// its three runs that wait for whatever may come, over that of a step in single precision.
@@ -133,9 +127,8 @@ impl Calibration {
         let mut best: Option<(f64, Self)> = None;
         // The longest step worth trying, of each kind of setting.
         let mut longest: Vec<(Setting, f64)> = Vec::new();
-        for (precision, step, openings) in SETTINGS {
-            let setting =
-                Setting { step, precision: Some(precision), openings, shapes: false, passed: true };
+        for (setting, precision) in settings() {
+            let step = setting.step;
             let least = best.as_ref().map_or(per_shot, |(least, _)| *least);
             if cost(&setting, precision) >= least {
                 break;
