@@ -21,24 +21,13 @@ pub(crate) struct End {
     pub at_reflection: bool,
     /// Once all bodies fly apart.
     pub when_apart: bool,
-    /// When it is looked whether the shot is decided.
-    pub looks: Looks,
+    /// Interval in s of looks whether the shot is decided: a fraction of the chain's own
+    /// time, so that the moment does not depend on steps, and long enough to cost nothing.
+    pub look_every_s: f64,
     /// The striker is followed until it is away for good.
     pub striker: bool,
     /// Once energy shows that nothing can change any more.
     pub when_decided: bool,
-}
-
-/// When it is looked whether a shot is decided: at multiples of a
-/// fraction of the chain's own time, so that the moment does not depend on
-/// steps, and seldom enough to cost a long chain nothing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Looks {
-    /// Interval in s.
-    pub interval_s: f64,
-    /// Longest wait with a wall: this many times the time that the pulse took to
-    /// reach it.
-    pub returns: f64,
 }
 
 /// Longest shot in times that the wave takes along the chain. It is at the wall after
@@ -65,7 +54,7 @@ const SHORT_CHAIN: f64 = 10.0;
 /// took to the wall. It is back at 2 and has hit the striker; behind strong
 /// losses slow beads follow until 4; in all of the paper's chains the striker is
 /// away for good before 6. Chains under load ring for ever and end here.
-const RETURNS: f64 = 6.0;
+pub(crate) const RETURNS: f64 = 6.0;
 
 /// Chains of this length and longer end when energy decides; shorter ones are
 /// followed to the end of the search, which costs them nothing.
@@ -96,7 +85,6 @@ pub(crate) fn end(plan: &Plan, system: &System) -> End {
     let open = plan.duration_s.is_none();
     let struck = matches!(plan.chain.start, Start::Striker { .. });
     let followed = plan.rebound && struck && plan.chain.suspension_m.is_none();
-    let looks = Looks { interval_s: bead_times(1.0 / LOOKS), returns: RETURNS };
     End {
         longest_s,
         most_steps: match open && wall {
@@ -105,7 +93,7 @@ pub(crate) fn end(plan: &Plan, system: &System) -> End {
         },
         at_reflection: open && wall,
         when_apart: open && !wall && plan.chain.suspension_m.is_none(),
-        looks,
+        look_every_s: bead_times(1.0 / LOOKS),
         striker: followed,
         when_decided: open && wall && system.beads() >= LONG_CHAIN,
     }

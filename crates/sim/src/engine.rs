@@ -373,7 +373,10 @@ fn conditioning(seen: &Passages, passage: &Passage, step_s: f64) -> Conditioning
         let time_s = peak.time_s - passage.wall.time_s;
         over(shape(seen.sensor(), &peak), time_s)
     });
-    reflected.map_or(incident, |reflected| incident.worse(reflected))
+    reflected.map_or(incident, |reflected| Conditioning {
+        forces: incident.forces.max(reflected.forces),
+        interpolation: incident.interpolation.max(reflected.interpolation),
+    })
 }
 
 /// The method's name.

@@ -93,15 +93,6 @@ pub(crate) struct Conditioning {
     pub interpolation: f64,
 }
 
-impl Conditioning {
-    pub(crate) fn worse(self, other: Self) -> Self {
-        Self {
-            forces: self.forces.max(other.forces),
-            interpolation: self.interpolation.max(other.interpolation),
-        }
-    }
-}
-
 impl Shot {
     /// The pulses as a plan picks them, from what its sensors showed.
     pub(crate) fn picked(

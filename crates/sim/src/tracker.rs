@@ -1,6 +1,6 @@
 //! Tracker pulses and the striker to the end of a shot.
 
-use crate::duration::{End, has_wall};
+use crate::duration::{End, RETURNS, has_wall};
 use crate::plan::Plan;
 use hertzchain_chain::observe::{Apart, Passages};
 use hertzchain_chain::wave::{Flow, Observer, Piece};
@@ -64,7 +64,7 @@ impl Tracker {
     fn look(&mut self, piece: &Piece<'_>, returned: bool) {
         let end_s = piece.time_s(1.0);
         while self.decided_s.is_none() {
-            let at_s = (self.looked + 1) as f64 * self.end.looks.interval_s;
+            let at_s = (self.looked + 1) as f64 * self.end.look_every_s;
             if at_s > end_s {
                 break;
             }
@@ -79,7 +79,7 @@ impl Tracker {
             }
         }
         let wall_s = self.passages.wall_peak_s().unwrap_or(0.0);
-        let waited_s = self.end.looks.returns * wall_s;
+        let waited_s = RETURNS * wall_s;
         if returned && self.awaits_striker() && waited_s <= end_s {
             let theta = ((waited_s - piece.start_s()) / piece.step_s()).clamp(0.0, 1.0);
             self.last_word = Some((piece.time_s(theta), piece.body(0, theta).1));

@@ -31,7 +31,7 @@ pub(super) fn long_wave(chain: &Chain, units: Units) -> Option<Group> {
     let beads = &chain.beads;
     let middle = beads.len() / 2;
     let (stiffness, exponent) = contact::elastic(chain, middle)?;
-    let row = Row {
+    let row = DimerRow {
         exponent,
         stiffness,
         masses_kg: [beads.get(middle - 1)?.mass_kg, beads.get(middle)?.mass_kg],
@@ -67,13 +67,13 @@ pub(super) fn long_wave(chain: &Chain, units: Units) -> Option<Group> {
 }
 
 /// A touching row of two kinds of beads by turns, contacts F = K δⁿ.
-struct Row {
+struct DimerRow {
     exponent: f64,
     stiffness: f64,
     masses_kg: [f64; 2],
 }
 
-impl Row {
+impl DimerRow {
     fn wave(&self) -> DimerWave {
         let [one, other] = self.masses_kg;
         DimerWave::new(self.exponent, (other - one) / (one + other))

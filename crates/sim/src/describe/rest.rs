@@ -67,11 +67,11 @@ fn ends(first: usize, last: usize) -> Vec<usize> {
     if first >= last { vec![first] } else { vec![first, last] }
 }
 
-fn is_uniform(beads: &[Bead]) -> bool {
+pub(super) fn is_uniform(beads: &[Bead]) -> bool {
     beads.windows(2).all(|pair| pair[0] == pair[1])
 }
 
-fn is_dimer(beads: &[Bead]) -> bool {
+pub(super) fn is_dimer(beads: &[Bead]) -> bool {
     beads.len() >= 4 && beads.windows(3).all(|three| three[0] == three[2])
 }
 

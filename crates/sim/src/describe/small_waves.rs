@@ -1,8 +1,9 @@
 //! Linear waves and normal modes under the static load, in numbers.
 
 use super::Group;
-use hertzchain_chain::theory::linear::{Dimer, Ends, Mode, UniformChain, normal_modes};
-use hertzchain_chain::{Bead, Chain, FarEnd, Start, System};
+use super::rest::{is_dimer, is_uniform};
+use hertzchain_chain::theory::linear::{Dimer, Ends, UniformChain, normal_modes};
+use hertzchain_chain::{Chain, FarEnd, Start, System};
 use std::f64::consts::{PI, TAU};
 
 /// Modes of longer chains take seconds and add nothing to the dispersion.
@@ -24,33 +25,23 @@ pub(super) fn dispersion(chain: &Chain, system: &System) -> Option<Group> {
     if beads.len() < 2 || pair.iter().any(|k| *k <= 0.0) {
         return None;
     }
-    if beads.windows(2).all(|two| two[0] == two[1]) {
+    let mut group = Group::new("Dispersion in the middle of the chain: frequency at wavenumber");
+    let mut add = |name: String, rad_s: f64| group.number(name, rad_s / TAU, "Hz");
+    if is_uniform(beads) {
         let row = UniformChain { mass_kg: beads[0].mass_kg, contact_stiffness_n_m: pair[0] };
-        return Some(uniform(&row));
+        for (part, name) in QUARTERS {
+            add(format!("{name} per bead"), row.angular_frequency_rad_s(part * PI));
+        }
+    } else if is_dimer(beads) {
+        let masses_kg = [beads[middle - 1].mass_kg, beads[middle].mass_kg];
+        let cell = Dimer { masses_kg, contact_stiffnesses_n_m: pair };
+        for (part, name) in QUARTERS {
+            let (acoustic, optical) = cell.branches_rad_s(part * PI);
+            add(format!("{name} per cell, acoustic"), acoustic);
+            add(format!("{name} per cell, optical"), optical);
+        }
     }
-    let alternate = beads.len() >= 4 && beads.windows(3).all(|three| three[0] == three[2]);
-    alternate.then(|| dimer(&beads[middle - 1], &beads[middle], pair))
-}
-
-fn uniform(row: &UniformChain) -> Group {
-    let mut group = Group::new("Dispersion in the middle of the chain: frequency at wavenumber");
-    for (part, name) in QUARTERS {
-        let frequency_hz = row.angular_frequency_rad_s(part * PI) / TAU;
-        group.number(format!("{name} per bead"), frequency_hz, "Hz");
-    }
-    group
-}
-
-fn dimer(first: &Bead, second: &Bead, contact_stiffnesses_n_m: [f64; 2]) -> Group {
-    let masses_kg = [first.mass_kg, second.mass_kg];
-    let cell = Dimer { masses_kg, contact_stiffnesses_n_m };
-    let mut group = Group::new("Dispersion in the middle of the chain: frequency at wavenumber");
-    for (part, name) in QUARTERS {
-        let (acoustic, optical) = cell.branches_rad_s(part * PI);
-        group.number(format!("{name} per cell, acoustic"), acoustic / TAU, "Hz");
-        group.number(format!("{name} per cell, optical"), optical / TAU, "Hz");
-    }
-    group
+    (!group.rows.is_empty()).then_some(group)
 }
 
 /// Lowest and highest frequencies of the chain as a whole; `None` when a
@@ -68,13 +59,10 @@ pub(super) fn modes(chain: &Chain, system: &System) -> Option<Group> {
     let modes = normal_modes(&masses, &stiffnesses, ends).ok()?;
     let shown = |i: usize| i < SHOWN || i + SHOWN >= modes.len();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| shown(*i)) {
-        group.number(format!("mode {} of {}", i + 1, modes.len()), hertz(mode), "Hz");
+        let frequency_hz = mode.angular_frequency_rad_s / TAU;
+        group.number(format!("mode {} of {}", i + 1, modes.len()), frequency_hz, "Hz");
     }
     Some(group)
-}
-
-fn hertz(mode: &Mode) -> f64 {
-    mode.angular_frequency_rad_s / TAU
 }
 
 /// What holds the ends, and the contacts that are springs then. A striker

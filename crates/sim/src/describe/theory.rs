@@ -2,6 +2,7 @@
 
 use super::Group;
 use super::contact;
+use super::rest::{is_dimer, is_uniform};
 use crate::error::StudyError;
 use crate::plan::Plan;
 use crate::shot::shoot;
@@ -196,12 +197,10 @@ pub(super) fn waves(chain: &Chain, system: &System) -> Waves {
     let inner = 1..beads.len();
     let overlap = |c: usize| system.static_contact(c).overlap_m;
     let loaded = inner.clone().filter(|c| overlap(*c) > 0.0).count();
-    let equal = beads.windows(2).all(|pair| pair[0] == pair[1]);
-    let dimer = beads.len() >= 4 && beads.windows(3).all(|three| three[0] == three[2]);
     if inner.clone().any(|c| overlap(c) < 0.0) {
         return Waves::None("there are gaps between the beads, which a pulse has to close first");
     }
-    match (equal, dimer, loaded) {
+    match (is_uniform(beads), is_dimer(beads), loaded) {
         (true, _, 0) => Waves::Touching,
         (true, _, all) if all == inner.len() => Waves::Loaded,
         (false, true, 0) => Waves::Dimer,

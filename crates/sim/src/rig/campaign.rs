@@ -300,36 +300,56 @@ pub fn plan_of_folder(path: &Path) -> Result<Plan, RigError> {
     }
 }
 
-/// Pairs of names and texts, a line each.
-macro_rules! long_names {
-    ($($name:ident: $text:literal;)*) => { [$((stringify!($name), $text)),*] };
-}
-
 /// True values of a shot, by name; the endings are the units.
 pub type Truth = Vec<(&'static str, f64)>;
 
-/// Names of true values with their descriptions in recordings.
-const LONG_NAMES: [(&str, &str); 19] = long_names! {
-    speed_m_s: "true speed of the striker at the touch";
-    touch_s: "time from the first sample to the striker's touch";
-    incident_peak_s: "time from the touch to the incident pulse's maximum at the sensor bead";
-    wall_peak_s: "time from the touch to the pulse's maximum at the wall";
-    reflected_peak_s: "time from the touch to the reflected pulse's maximum at the sensor bead";
-    incident_tof_s: "true incident time of flight";
-    reflected_tof_s: "true reflected time of flight";
-    incident_peak_n: "largest force of the incident pulse at the sensor bead";
-    wall_peak_n: "largest force at the wall";
-    reflected_peak_n: "largest force of the reflected pulse at the sensor bead";
-    rebound_m_s: "final velocity of the striker, negative away from the chain";
-    rest_s: "time from the touch until all beads rest";
-    open_before: "number of open contacts before the shot";
-    gaps_before_m: "sum of all gaps before the shot";
-    largest_gap_before_m: "largest gap before the shot";
-    open_after: "number of open contacts after the shot, at rest";
-    gaps_after_m: "sum of all gaps after the shot, at rest";
-    largest_gap_after_m: "largest gap after the shot, at rest";
-    overlap_before_m: "overlap of every contact before the shot, negative across a gap";
-};
+/// Makes a list of true values with their descriptions in recordings, and what computes them.
+macro_rules! truths {
+    (|$measured:ident| $($name:ident: $text:literal, $value:expr;)*) => {
+        const LONG_NAMES: &[(&str, &str)] = &[
+            $((stringify!($name), $text),)*
+            ("overlap_before_m", "overlap of every contact before the shot, negative across a gap"),
+        ];
+
+        /// What only a simulation knows of a shot.
+        pub fn truth($measured: &MeasuredShot) -> Truth {
+            vec![$((stringify!($name), $value)),*]
+        }
+    };
+}
+
+truths! { |it|
+    speed_m_s: "true speed of the striker at the touch", it.speed_m_s;
+    touch_s: "time from the first sample to the striker's touch", it.record.touch_s;
+    incident_peak_s: "time from the touch to the incident pulse's maximum at the sensor bead",
+        it.shot.peaks_s[0];
+    wall_peak_s: "time from the touch to the pulse's maximum at the wall", it.shot.peaks_s[1];
+    reflected_peak_s: "time from the touch to the reflected pulse's maximum at the sensor bead",
+        it.shot.peaks_s[2];
+    incident_tof_s: "true incident time of flight", it.shot.incident_s;
+    reflected_tof_s: "true reflected time of flight", it.shot.reflected_s;
+    incident_peak_n: "largest force of the incident pulse at the sensor bead", it.shot.peaks_n[0];
+    wall_peak_n: "largest force at the wall", it.shot.peaks_n[1];
+    reflected_peak_n: "largest force of the reflected pulse at the sensor bead",
+        it.shot.peaks_n[2];
+    rebound_m_s: "final velocity of the striker, negative away from the chain",
+        it.shot.rebound_m_s;
+    rest_s: "time from the touch until all beads rest", it.shot.rest_s;
+    open_before: "number of open contacts before the shot", open(&it.shot.gaps_before_m);
+    gaps_before_m: "sum of all gaps before the shot", it.shot.gaps_before_m.iter().sum();
+    largest_gap_before_m: "largest gap before the shot", largest(&it.shot.gaps_before_m);
+    open_after: "number of open contacts after the shot, at rest", open(&it.shot.gaps_after_m);
+    gaps_after_m: "sum of all gaps after the shot, at rest", it.shot.gaps_after_m.iter().sum();
+    largest_gap_after_m: "largest gap after the shot, at rest", largest(&it.shot.gaps_after_m);
+}
+
+fn open(gaps_m: &[f64]) -> f64 {
+    gaps_m.iter().filter(|gap| **gap > 0.0).count() as f64
+}
+
+fn largest(gaps_m: &[f64]) -> f64 {
+    gaps_m.iter().copied().fold(0.0, f64::max)
+}
 
 /// Runs a series into a file, which has its name once it is whole.
 ///
@@ -389,7 +409,7 @@ fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
         case: plan.case(series).name.clone(),
         seed: plan.seed,
         experiment: plan.experiment.text().to_owned(),
-        long_names: &LONG_NAMES,
+        long_names: LONG_NAMES,
         more: vec![
             ("title".to_owned(), plan.experiment.title().to_owned()),
             ("inputs".to_owned(), inputs.to_owned()),
@@ -404,32 +424,4 @@ fn info(plan: &Plan, series: &Series, inputs: &str) -> SeriesInfo {
             ("low_pass_kind".to_owned(), amplifier.kind.name().to_owned()),
         ],
     }
-}
-
-/// What only a simulation knows of a shot.
-pub fn truth(measured: &MeasuredShot) -> Truth {
-    let shot = &measured.shot;
-    let open = |gaps_m: &[f64]| gaps_m.iter().filter(|gap| **gap > 0.0).count() as f64;
-    let largest = |gaps_m: &[f64]| gaps_m.iter().copied().fold(0.0, f64::max);
-    let (before_m, after_m) = (&shot.gaps_before_m[..], &shot.gaps_after_m[..]);
-    vec![
-        ("speed_m_s", measured.speed_m_s),
-        ("touch_s", measured.record.touch_s),
-        ("incident_peak_s", shot.peaks_s[0]),
-        ("wall_peak_s", shot.peaks_s[1]),
-        ("reflected_peak_s", shot.peaks_s[2]),
-        ("incident_tof_s", shot.incident_s),
-        ("reflected_tof_s", shot.reflected_s),
-        ("incident_peak_n", shot.peaks_n[0]),
-        ("wall_peak_n", shot.peaks_n[1]),
-        ("reflected_peak_n", shot.peaks_n[2]),
-        ("rebound_m_s", shot.rebound_m_s),
-        ("rest_s", shot.rest_s),
-        ("open_before", open(before_m)),
-        ("gaps_before_m", before_m.iter().sum()),
-        ("largest_gap_before_m", largest(before_m)),
-        ("open_after", open(after_m)),
-        ("gaps_after_m", after_m.iter().sum()),
-        ("largest_gap_after_m", largest(after_m)),
-    ]
 }

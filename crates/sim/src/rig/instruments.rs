@@ -158,9 +158,8 @@ impl Converter {
     }
 }
 
-/// States of the high-pass and of a low-pass of one factor; and of a low-pass of four states.
-const FEW: usize = 3;
-const MANY: usize = 5;
+/// States of the high-pass and of the longest low-pass.
+const STATES: usize = 5;
 
 /// Charge amplifier of two piezo discs on a sampling grid.
 ///
@@ -168,36 +167,25 @@ const MANY: usize = 5;
 /// low-pass, a product of [factors](LowPassFactor) of first and second order.
 #[derive(Clone, Copy, Debug)]
 pub struct Amplifier {
-    filter: AmplifierFilter,
+    filter: FirstOrderHold,
+    /// What the high-pass has followed, then each factor's output and, of one of second order,
+    /// its rate over ω.
+    state: [f64; STATES],
+    /// Number of the last factor's output.
+    output: usize,
     sensor_v_n: f64,
     wall_v_n: f64,
     input_v: f64,
 }
 
-/// The filters with their states: what the high-pass has followed, then each factor's output
-/// and, of one of second order, its rate over ω.
-#[derive(Clone, Copy, Debug)]
-enum AmplifierFilter {
-    Short(FirstOrderHold<FEW>, [f64; FEW]),
-    // With the number of the last factor's output.
-    Long(FirstOrderHold<MANY>, [f64; MANY], usize),
-}
-
 impl Amplifier {
     /// Returns the amplifier at rest, for samples every `interval_s`.
     pub fn new(settings: &Settings, interval_s: f64) -> Self {
-        let filter = match settings.factors() {
-            [_] => {
-                let (a, b, _) = system(settings);
-                AmplifierFilter::Short(FirstOrderHold::new(&a, &b, interval_s), [0.0; FEW])
-            }
-            _ => {
-                let (a, b, output) = system(settings);
-                AmplifierFilter::Long(FirstOrderHold::new(&a, &b, interval_s), [0.0; MANY], output)
-            }
-        };
+        let (a, b, output) = system(settings);
         Self {
-            filter,
+            filter: FirstOrderHold::new(&a, &b, interval_s),
+            state: [0.0; STATES],
+            output,
             sensor_v_n: settings.gain_v_c * settings.sensitivity_c_n,
             wall_v_n: settings.gain_v_c * settings.wall_sensitivity_c_n,
             input_v: 0.0,
@@ -209,16 +197,8 @@ impl Amplifier {
     pub fn next(&mut self, sensor_n: f64, wall_n: f64) -> f64 {
         let input_v = self.sensor_v_n * sensor_n + self.wall_v_n * wall_n;
         let before_v = std::mem::replace(&mut self.input_v, input_v);
-        match &mut self.filter {
-            AmplifierFilter::Short(hold, state) => {
-                *state = hold.step(state, before_v, input_v);
-                state[1]
-            }
-            AmplifierFilter::Long(hold, state, output) => {
-                *state = hold.step(state, before_v, input_v);
-                state[*output]
-            }
-        }
+        self.state = self.filter.step(&self.state, before_v, input_v);
+        self.state[self.output]
     }
 
     /// Returns voltages at equal times for forces in N that are smooth between samples.
@@ -238,8 +218,8 @@ impl Amplifier {
 
 /// A and B of both filters in 1/s, and which state is the output. The input less the first
 /// state passes the high-pass; of each factor the output is the next one's input.
-fn system<const N: usize>(settings: &Settings) -> ([[f64; N]; N], [f64; N], usize) {
-    let (mut a, mut b) = ([[0.0; N]; N], [0.0; N]);
+fn system(settings: &Settings) -> ([[f64; STATES]; STATES], [f64; STATES], usize) {
+    let (mut a, mut b) = ([[0.0; STATES]; STATES], [0.0; STATES]);
     let high = TAU * settings.high_pass_hz;
     (a[0][0], b[0]) = (-high, high);
     let (mut output, mut next) = (0, 1);
@@ -267,35 +247,35 @@ fn system<const N: usize>(settings: &Settings) -> ([[f64; N]; N], [f64; N], usiz
 /// First-order-hold discretisation of ẋ = A x + B u, exact for inputs that are straight lines
 /// between samples: x(h) = Φ x(0) + γ u(0) + δ (u(h) − u(0)).
 #[derive(Clone, Copy, Debug)]
-struct FirstOrderHold<const N: usize> {
-    transition: [[f64; N]; N],
-    input: [f64; N],
-    change: [f64; N],
+struct FirstOrderHold {
+    transition: [[f64; STATES]; STATES],
+    input: [f64; STATES],
+    change: [f64; STATES],
 }
 
-impl<const N: usize> FirstOrderHold<N> {
-    fn new(a: &[[f64; N]; N], b: &[f64; N], step_s: f64) -> Self {
+impl FirstOrderHold {
+    fn new(a: &[[f64; STATES]; STATES], b: &[f64; STATES], step_s: f64) -> Self {
         // exp of the system with u and its change as states of their own:
         // u̇ = change/step, so that over a step of length 1 it is the change.
-        let mut square = vec![vec![0.0; N + 2]; N + 2];
-        for row in 0..N {
-            for column in 0..N {
+        let mut square = vec![vec![0.0; STATES + 2]; STATES + 2];
+        for row in 0..STATES {
+            for column in 0..STATES {
                 square[row][column] = a[row][column] * step_s;
             }
-            square[row][N] = b[row] * step_s;
+            square[row][STATES] = b[row] * step_s;
         }
-        square[N][N + 1] = 1.0;
+        square[STATES][STATES + 1] = 1.0;
         let whole = exponential(&square);
         Self {
             transition: std::array::from_fn(|x| std::array::from_fn(|y| whole[x][y])),
-            input: std::array::from_fn(|x| whole[x][N]),
-            change: std::array::from_fn(|x| whole[x][N + 1]),
+            input: std::array::from_fn(|x| whole[x][STATES]),
+            change: std::array::from_fn(|x| whole[x][STATES + 1]),
         }
     }
 
     /// The state a step later; the input goes from `from` to `to`.
     #[inline]
-    fn step(&self, state: &[f64; N], from: f64, to: f64) -> [f64; N] {
+    fn step(&self, state: &[f64; STATES], from: f64, to: f64) -> [f64; STATES] {
         let change = to - from;
         std::array::from_fn(|row| {
             let rows = self.transition[row].iter().zip(state);

@@ -4,8 +4,8 @@ use hertzchain_chain::Sensor;
 use hertzchain_chain::theory::solitary::{SolitaryShape, SolitaryWave};
 use hertzchain_experiment::Experiment;
 
-fn row(exponent: f64, masses_kg: [f64; 2]) -> Row {
-    Row { exponent, stiffness: 1.0, masses_kg }
+fn row(exponent: f64, masses_kg: [f64; 2]) -> DimerRow {
+    DimerRow { exponent, stiffness: 1.0, masses_kg }
 }
 
 #[test]
