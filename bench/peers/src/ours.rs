@@ -7,7 +7,7 @@ use cpu_time::ProcessTime;
 use hertzchain_chain::ensemble::{self, Precision};
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, Law, law};
 use hertzchain_chain::observe::{Maximum, Passages};
-use hertzchain_chain::wave::{DormandPrince, Flow, Limits, Observer, Piece, run};
+use hertzchain_chain::wave::{Flow, Limits, Method, Observer, Piece, run};
 use hertzchain_chain::{
     Bead, Chain, FarEnd, InstructionSet, Material, Push, Section, Sensor, Start, System, Tension,
 };
@@ -205,7 +205,7 @@ pub fn shot(case: Case, speed_m_s: f64, tolerance: f64, end: End) -> (f64, f64) 
         passages: Passages::new(SENSOR, BEADS, true),
         end,
     };
-    let method = DormandPrince { tolerance };
+    let method = Method::dormand_prince(tolerance);
     if run(&system, &method, Limits::until(1.0), &mut [&mut passed]).is_err() {
         return nothing;
     }

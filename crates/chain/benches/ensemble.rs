@@ -10,7 +10,7 @@ mod common;
 use common::{cubic, hertz, row, viscoelastic};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use hertzchain_chain::ensemble::{End, Precision, Settings, Shot, fire, repeat_force_pass};
+use hertzchain_chain::ensemble::{End, Precision, Settings, Shot, fire};
 use hertzchain_chain::laws::{DampingPower, Law, law};
 use hertzchain_chain::{FarEnd, InstructionSet, Sensor, System};
 use std::sync::Arc;
@@ -65,24 +65,6 @@ fn dry_shots_in_double_precision(bencher: Bencher<'_, '_>, set: &str) {
 #[divan::bench(args = SETS)]
 fn dry_shots_in_single_precision(bencher: Bencher<'_, '_>, set: &str) {
     block(bencher, Precision::Single, set, "dry");
-}
-
-/// Nothing but forces; an item is a contact.
-fn force_pass(bencher: Bencher<'_, '_>, precision: Precision, set: &str) {
-    let system = System::new(&row(40, 0.5, laws("dry"))).unwrap();
-    let (set, times) = (InstructionSet::named(set).unwrap_or_default(), 1_000);
-    let items = ItemsCount::new(times * precision.lanes() * system.contacts());
-    bencher.counter(items).bench(|| repeat_force_pass(black_box(&system), precision, set, times));
-}
-
-#[divan::bench(args = SETS)]
-fn dry_force_pass_in_double_precision(bencher: Bencher<'_, '_>, set: &str) {
-    force_pass(bencher, Precision::Double, set);
-}
-
-#[divan::bench(args = SETS)]
-fn dry_force_pass_in_single_precision(bencher: Bencher<'_, '_>, set: &str) {
-    force_pass(bencher, Precision::Single, set);
 }
 
 #[divan::bench(args = LAWS)]

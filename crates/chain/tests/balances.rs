@@ -4,7 +4,7 @@ use crate::common::*;
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, ElasticPower, law};
 use hertzchain_chain::observe::{Passages, Signal};
 use hertzchain_chain::theory::linear::{Ends, UniformChain, normal_modes};
-use hertzchain_chain::wave::{DormandPrince, Limits, run};
+use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_chain::*;
 
 fn moving(bead: usize, velocity_m_s: f64) -> Initial {
@@ -30,7 +30,7 @@ fn two_equal_pulses_that_meet_leave_the_middle_at_rest() {
     };
     let system = System::new(&chain).unwrap();
     let mut middle = Signal::new(Sensor::Contact(20));
-    let method = DormandPrince { tolerance: 1e-11 };
+    let method = Method::dormand_prince(1e-11);
     let outcome = run(&system, &method, Limits::until(60.0), &mut [&mut middle]).unwrap();
     let velocity = &outcome.velocity_m_s;
     for bead in 1..=20 {
@@ -228,7 +228,7 @@ fn a_gap_delays_the_wall_by_the_time_its_bead_needs_to_cross() {
         let chain = Chain { gaps, ..row(40, 0.5, vec![hertz()]) };
         let system = System::new(&chain).unwrap();
         let mut passages = Passages::new(7, 40, true);
-        let method = DormandPrince { tolerance: 1e-9 };
+        let method = Method::dormand_prince(1e-9);
         run(&system, &method, Limits::until(1.0), &mut [&mut passages]).unwrap();
         passages.passage().unwrap().wall.time_s
     };

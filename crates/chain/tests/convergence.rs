@@ -1,23 +1,12 @@
 //! The order of every solver, on a smooth problem and on impact.
 
 use crate::common::*;
-use hertzchain_chain::wave::{Control, DormandPrince, Limits, Method, Rk4, Table, Verlet, run};
+use hertzchain_chain::wave::{Control, Limits, Method, run};
 use hertzchain_chain::*;
 
 /// The default pair with a fixed step, so that its order can be seen.
-#[derive(Debug)]
-struct FixedPair(f64);
-
-impl Method for FixedPair {
-    fn table(&self) -> Table {
-        DormandPrince { tolerance: 1.0 }.table()
-    }
-    fn control(&self) -> Control {
-        Control::Fixed { step_s: self.0 }
-    }
-    fn name(&self) -> &'static str {
-        "Dormand–Prince, fixed step"
-    }
+fn fixed_pair(step_s: f64) -> Method {
+    Method { control: Control::Fixed { step_s }, ..Method::dormand_prince(1.0) }
 }
 
 /// A preloaded Hertz ring in which no contact ever opens.
@@ -36,27 +25,27 @@ fn smooth() -> Chain {
 }
 
 /// Largest error of a velocity at the end against a tight run, in units of v0.
-fn error(chain: &Chain, method: &dyn Method, duration: f64, exact: &[f64]) -> f64 {
+fn error(chain: &Chain, method: &Method, duration: f64, exact: &[f64]) -> f64 {
     let system = System::new(chain).unwrap();
     let outcome = run(&system, method, Limits::until(duration), &mut []).unwrap();
     outcome.velocity_m_s.iter().zip(exact).map(|(v, e)| (v - e).abs()).fold(0.0, f64::max)
 }
 
 /// Slope of log error against log step over two halvings.
-fn order(chain: &Chain, duration: f64, step: f64, method: impl Fn(f64) -> Box<dyn Method>) -> f64 {
+fn order(chain: &Chain, duration: f64, step: f64, method: impl Fn(f64) -> Method) -> f64 {
     let exact = run_for(chain, 1e-13, duration).velocity_m_s;
-    let coarse = error(chain, &*method(step), duration, &exact);
-    let fine = error(chain, &*method(step / 4.0), duration, &exact);
+    let coarse = error(chain, &method(step), duration, &exact);
+    let fine = error(chain, &method(step / 4.0), duration, &exact);
     (coarse / fine).log2() / 2.0
 }
 
 /// Least-squares slope over eight halvings: where contacts open and close
 /// inside steps, two steps alone may be lucky or not.
-fn mean_order(chain: &Chain, duration: f64, method: &dyn Fn(f64) -> Box<dyn Method>) -> f64 {
+fn mean_order(chain: &Chain, duration: f64, method: &dyn Fn(f64) -> Method) -> f64 {
     let exact = run_for(chain, 1e-13, duration).velocity_m_s;
     let at = |halving: i32| {
         let step = 1e-6 * 0.5_f64.powi(halving);
-        (f64::from(-halving), error(chain, &*method(step), duration, &exact).log2())
+        (f64::from(-halving), error(chain, &method(step), duration, &exact).log2())
     };
     let points: Vec<(f64, f64)> = (0..=8).map(at).collect();
     let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / 9.0;
@@ -67,10 +56,10 @@ fn mean_order(chain: &Chain, duration: f64, method: &dyn Fn(f64) -> Box<dyn Meth
 #[test]
 fn every_method_has_its_order_where_nothing_opens() {
     let chain = smooth();
-    let order = |step, method: &dyn Fn(f64) -> Box<dyn Method>| order(&chain, 8.0, step, method);
-    let rk4 = order(0.1, &|step_s| Box::new(Rk4 { step_s }));
-    let verlet = order(0.1, &|step_s| Box::new(Verlet { step_s }));
-    let pair = order(0.1, &|step| Box::new(FixedPair(step)));
+    let order = |step, method: &dyn Fn(f64) -> Method| order(&chain, 8.0, step, method);
+    let rk4 = order(0.1, &|step_s| Method::rk4(step_s));
+    let verlet = order(0.1, &|step_s| Method::verlet(step_s));
+    let pair = order(0.1, &|step| fixed_pair(step));
     // Steps are finite: observed orders are near the nominal ones.
     assert!((rk4 - 4.0).abs() < 0.2, "RK4: {rk4}");
     assert!((verlet - 2.0).abs() < 0.2, "Verlet: {verlet}");
@@ -84,10 +73,10 @@ fn fixed_steps_lose_order_on_impact_and_located_changes_keep_the_accuracy() {
     let laws = || vec![hertz(), viscoelastic(), cubic()];
     let chain = Chain { far: FarEnd::Free, ..row(8, 0.5, laws()) };
     let duration = 2e-4;
-    let order = |method: &dyn Fn(f64) -> Box<dyn Method>| mean_order(&chain, duration, method);
-    let rk4 = order(&|step_s| Box::new(Rk4 { step_s }));
-    let verlet = order(&|step_s| Box::new(Verlet { step_s }));
-    let pair = order(&|step| Box::new(FixedPair(step)));
+    let order = |method: &dyn Fn(f64) -> Method| mean_order(&chain, duration, method);
+    let rk4 = order(&|step_s| Method::rk4(step_s));
+    let verlet = order(&|step_s| Method::verlet(step_s));
+    let pair = order(&|step| fixed_pair(step));
     // A force that jumps inside a step leaves order 1, whatever the nominal
     // one; half an order is how much slopes scatter.
     for (name, order) in [("RK4", rk4), ("Verlet", verlet), ("Dormand–Prince", pair)] {
@@ -95,7 +84,7 @@ fn fixed_steps_lose_order_on_impact_and_located_changes_keep_the_accuracy() {
     }
     let exact = run_for(&chain, 1e-13, duration).velocity_m_s;
     for tolerance in [1e-5, 1e-7, 1e-9] {
-        let error = error(&chain, &DormandPrince { tolerance }, duration, &exact) / 0.5;
+        let error = error(&chain, &Method::dormand_prince(tolerance), duration, &exact) / 0.5;
         // Some hundred steps, each wrong by up to the tolerance, few of them one-sided.
         assert!(error < 30.0 * tolerance, "{tolerance:e}: {error:e}");
     }
@@ -127,7 +116,7 @@ fn force_passes_per_shot_are_no_more_than_pinned() {
     for (laws, tolerance, most) in pinned {
         let system = System::new(&row(40, 0.5, laws)).unwrap();
         let mut passages = observe::Passages::new(7, 40, true);
-        let method = DormandPrince { tolerance };
+        let method = Method::dormand_prince(tolerance);
         let outcome = run(&system, &method, Limits::until(1.0), &mut [&mut passages]).unwrap();
         let passes = outcome.work.force_passes;
         assert!(passes <= most && passes > most / 2, "{tolerance:e}: {passes}, pinned {most}");
@@ -137,7 +126,7 @@ fn force_passes_per_shot_are_no_more_than_pinned() {
 #[test]
 fn a_tolerance_below_rounding_is_refused() {
     let system = System::new(&row(5, 0.5, vec![hertz()])).unwrap();
-    let method = DormandPrince { tolerance: 1e-22 };
+    let method = Method::dormand_prince(1e-22);
     let error = run(&system, &method, Limits::until(1e-3), &mut []).unwrap_err().to_string();
     assert!(error.contains("cannot be reached") && error.contains("5e-15"), "{error}");
 }
@@ -154,7 +143,7 @@ fn a_shot_that_cannot_be_computed_names_the_time_and_the_contact() {
     ];
     let system = System::new(&chain).unwrap();
     let limits = Limits { force_passes: Some(20_000), ..Limits::until(1e-3) };
-    let error = run(&system, &DormandPrince { tolerance: 1e-9 }, limits, &mut []).unwrap_err();
+    let error = run(&system, &Method::dormand_prince(1e-9), limits, &mut []).unwrap_err();
     let text = error.to_string();
     assert!(text.contains("gave up at t = ") || text.contains("cannot reach"), "{text}");
     assert!(text.contains("contact 3") || text.contains("contact 4"), "{text}");

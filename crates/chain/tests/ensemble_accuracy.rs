@@ -4,7 +4,7 @@ use crate::common::ensemble::*;
 use crate::common::random_shots::*;
 use hertzchain_chain::ensemble::{End, Settings};
 use hertzchain_chain::observe::Passages;
-use hertzchain_chain::wave::{DormandPrince, Limits, run};
+use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_chain::*;
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ fn converged(shot: &RandomShot, system: &System) -> Option<([f64; 2], f64)> {
         return None;
     };
     let mut passages = Passages::new(sensor, wall, true);
-    let method = DormandPrince { tolerance: 1e-9 };
+    let method = Method::dormand_prince(1e-9);
     let outcome = run(system, &method, Limits::until(1.0), &mut [&mut passages]).ok()?;
     let tofs = tofs(&passages.passage().ok()?);
     tofs[1].is_finite().then_some((tofs, outcome.time_s))

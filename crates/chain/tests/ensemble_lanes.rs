@@ -3,7 +3,7 @@
 
 use crate::common::ensemble::*;
 use crate::common::*;
-use hertzchain_chain::ensemble::{End, LaneResult, Precision, Settings, Shot, fire, fire_while};
+use hertzchain_chain::ensemble::{End, LaneResult, Precision, Settings, Shot, fire, fire_each};
 use hertzchain_chain::laws::{
     DampingCubic, DampingLinear, DampingPower, ElasticHertz, ElasticPlasticThornton, Law, law,
 };
@@ -200,7 +200,7 @@ fn shots_that_no_user_wants_any_more_are_broken_off_within_few_steps() {
         for most in [0, 1, 5] {
             let asked = Cell::new(0);
             let wanted = || asked.replace(asked.get() + 1) < most;
-            for flown in fire_while(&shots, &settings, &wanted) {
+            for flown in fire_each(&shots, &settings, &wanted, |_, lane| lane) {
                 assert_eq!(flown.unwrap_err(), SolveError::BrokenOff);
             }
             assert_eq!(asked.get(), most + 1);

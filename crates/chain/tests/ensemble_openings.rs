@@ -5,7 +5,7 @@ use crate::common::*;
 use hertzchain_chain::ensemble::{End, Settings};
 use hertzchain_chain::laws::Law;
 use hertzchain_chain::observe::Passages;
-use hertzchain_chain::wave::{DormandPrince, Limits, run};
+use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_chain::*;
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ fn dry() -> Vec<Arc<dyn Law>> {
 fn error(chain: &Chain, (step, openings): (f64, bool)) -> f64 {
     let (system, wall) = (System::new(chain).unwrap(), chain.beads.len());
     let mut passages = Passages::new(2, wall, true);
-    let method = DormandPrince { tolerance: 1e-11 };
+    let method = Method::dormand_prince(1e-11);
     let outcome = run(&system, &method, Limits::until(1.0), &mut [&mut passages]).unwrap();
     let exact = tofs(&passages.passage().unwrap());
     let settings = Settings {

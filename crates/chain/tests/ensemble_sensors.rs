@@ -4,7 +4,7 @@ use crate::common::ensemble::*;
 use crate::common::*;
 use hertzchain_chain::ensemble::{End, Settings};
 use hertzchain_chain::observe::Signal;
-use hertzchain_chain::wave::{DormandPrince, Limits, Observer, run};
+use hertzchain_chain::wave::{Limits, Method, Observer, run};
 use hertzchain_chain::*;
 
 /// Largest difference of the samples of a signal from another signal within a
@@ -61,7 +61,7 @@ fn both(
     let mut one_step: Vec<Signal> = sensors.iter().map(|sensor| Signal::new(*sensor)).collect();
     let mut observers: Vec<&mut dyn Observer> =
         one_step.iter_mut().map(|signal| signal as &mut dyn Observer).collect();
-    let method = DormandPrince { tolerance: 1e-11 };
+    let method = Method::dormand_prince(1e-11);
     let limits = Limits::until(flown.time_s);
     let outcome = run(&system, &method, limits, &mut observers).unwrap();
     let pairs = flown.velocity_m_s.iter().zip(&outcome.velocity_m_s);

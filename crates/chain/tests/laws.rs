@@ -1,14 +1,12 @@
 //! What every law of the registry must obey.
 
 use crate::common;
-use crate::common::close;
-use hertzchain_chain::InstructionSet;
-use hertzchain_chain::Pair;
+use crate::common::ensemble::{fire_one, settings};
+use crate::common::{close, cubic, hertz, row, viscoelastic};
 use hertzchain_chain::laws::{
-    Arithmetic, Closed, Columns, DampingCubic, DampingViscoelastic, ElasticHertz, LAWS, Law,
-    Nature, Parameter, Source, Split, Wide,
+    Closed, Columns, DampingCubic, LAWS, Law, Nature, Parameter, Source, law,
 };
-use std::ops::{Add, Mul};
+use hertzchain_chain::{InstructionSet, Pair, System};
 use std::sync::Arc;
 
 /// A law with every required parameter at a value of the right size.
@@ -270,56 +268,22 @@ fn viscoelastic_damping_with_time_and_stiffness_given_needs_no_material() {
     }
 }
 
-/// A register of one number.
-#[derive(Clone, Copy)]
-struct One(f64);
-
-impl Add for One {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0)
-    }
-}
-
-impl Mul for One {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        Self(self.0 * other.0)
-    }
-}
-
-impl Arithmetic for One {
-    fn times_plus(self, factor: Self, rest: Self) -> Self {
-        Self(self.0.mul_add(factor.0, rest.0))
-    }
-}
-
-/// What a law adds to a sum that has something in it, and what it says alone.
-fn both<T: Wide<1>>(k: f64, contact: Closed) -> [f64; 2] {
-    let before = Split { rooted: One(1.5), plain: One(-0.5) };
-    let registers = Closed {
-        overlap: One(contact.overlap),
-        root: One(contact.root),
-        rate: One(contact.rate),
-        largest: One(contact.largest),
-    };
-    let after = T::add_to(before, [One(k)], registers);
-    let added = contact.root * (after.rooted.0 - before.rooted.0) + after.plain.0 - before.plain.0;
-    [added, T::force(&[k], contact)]
-}
-
+/// Sums that the ensemble loop runs in one go, in another order law by law.
 #[test]
-fn a_law_says_the_same_for_registers_as_for_numbers() {
-    for (overlap, rate, k) in [(0.3, 0.7, 11.0), (2.0, -1.3, 5.0), (0.01, 4.0, 0.3)] {
-        let contact = Closed::new(overlap, rate);
-        let pairs = [
-            both::<ElasticHertz>(k, contact),
-            both::<DampingViscoelastic>(k, contact),
-            both::<DampingCubic>(k, contact),
-        ];
-        for [added, alone] in pairs {
-            // Some roundings of sums of the size of what was there before.
-            assert!((added - alone).abs() < 1e-15 * (2.0 + 8.0 * alone.abs()), "{added} {alone}");
+fn fused_sums_are_those_of_their_laws() {
+    let idle = law(DampingCubic { coefficient_kg_s_m2: 0.0 });
+    let sums = [
+        (vec![hertz()], vec![hertz(), idle]),
+        (vec![hertz(), viscoelastic()], vec![viscoelastic(), hertz()]),
+        (vec![hertz(), viscoelastic(), cubic()], vec![cubic(), hertz(), viscoelastic()]),
+    ];
+    for (fused, by_law) in sums {
+        let fly = |laws| {
+            let system = System::new(&row(12, 0.5, laws)).unwrap();
+            fire_one(&system, (0.05, 1e-3), &settings(12)).velocity_m_s
+        };
+        for (one, other) in fly(fused).into_iter().zip(fly(by_law)) {
+            assert!((one - other).abs() < 1e-12, "{one} {other}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use hertzchain_chain::observe::Separation;
-use hertzchain_chain::wave::{DormandPrince, Limits, run};
+use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_chain::*;
 
 fn dry() -> Vec<std::sync::Arc<dyn laws::Law>> {
@@ -40,7 +40,7 @@ fn peaks_and_rebound_match_an_independent_integration() {
     let mut passages = observe::Passages::new(7, 40, false);
     let mut separation = Separation::default();
     let limits = Limits::until(reference("rig/hertz_1", "run_ends_s"));
-    let method = DormandPrince { tolerance: 1e-10 };
+    let method = Method::dormand_prince(1e-10);
     let outcome = run(&system, &method, limits, &mut [&mut passages, &mut separation]).unwrap();
     let passage = passages.passage().unwrap();
     // The reference's own error is 1e-8 at worst.
@@ -68,7 +68,7 @@ fn equal_striker_sends_the_known_pulse() {
     let mut velocity = observe::Signal::new(Sensor::Velocity(80));
     let mut later = observe::Signal::new(Sensor::Velocity(100));
     let mut force = observe::Signal::new(Sensor::Contact(80));
-    let method = DormandPrince { tolerance: 1e-11 };
+    let method = Method::dormand_prince(1e-11);
     run(&system, &method, Limits::until(125.0), &mut [&mut velocity, &mut later, &mut force])
         .unwrap();
     let first = |signal: &observe::Signal| signal.maxima()[0];

@@ -3,7 +3,7 @@
 use crate::common;
 use crate::common::STEEL;
 use hertzchain_chain::laws::{LAWS, Law, Source};
-use hertzchain_chain::wave::{DormandPrince, Limits, run};
+use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_chain::*;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -130,7 +130,7 @@ proptest! {
         let duration = 60.0 * system.scales().time_s;
         let limits = Limits { budget: true, force_passes: Some(400_000), ..Limits::until(duration) };
         // Every one of these must be computed: a refusal is a failure.
-        let outcome = run(&system, &DormandPrince { tolerance: 1e-7 }, limits, &mut [])
+        let outcome = run(&system, &Method::dormand_prince(1e-7), limits, &mut [])
             .map_err(|error| TestCaseError::fail(error.to_string()))?;
         prop_assert!(outcome.velocity_m_s.iter().all(|v| v.is_finite()));
         let budget = outcome.budget.unwrap();
@@ -151,7 +151,7 @@ proptest! {
         let chain = started(chain, kind, size);
         let system = System::new(&chain).unwrap();
         let limits = Limits { budget: true, ..Limits::until(60.0 * system.scales().time_s) };
-        let outcome = run(&system, &DormandPrince { tolerance: 1e-7 }, limits, &mut [])
+        let outcome = run(&system, &Method::dormand_prince(1e-7), limits, &mut [])
             .map_err(|error| TestCaseError::fail(error.to_string()))?;
         prop_assert!(outcome.velocity_m_s.iter().all(|v| v.is_finite()));
         let budget = outcome.budget.unwrap();
@@ -177,7 +177,7 @@ proptest! {
         };
         if let Ok(system) = System::new(&chain) {
             let limits = Limits { force_passes: Some(10_000), ..Limits::until(1e-4) };
-            let _ = run(&system, &DormandPrince { tolerance: 1e-6 }, limits, &mut []);
+            let _ = run(&system, &Method::dormand_prince(1e-6), limits, &mut []);
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::common::*;
 use hertzchain_chain::laws::{DampingLinear, DampingTsuji, Law, law};
 use hertzchain_chain::settle::{Rest, SlowPhase, State, settle};
-use hertzchain_chain::wave::{DormandPrince, Limits, SolveError, run};
+use hertzchain_chain::wave::{Limits, Method, SolveError, run};
 use hertzchain_chain::*;
 use std::sync::Arc;
 
@@ -98,7 +98,7 @@ fn two_beads_part_as_fast_as_in_the_wave_loop() {
         let chain = Chain { far: FarEnd::Free, ..row(1, 0.18, laws.clone()) };
         let system = System::new(&chain).unwrap();
         let limits = Limits::until(2e-4);
-        let outcome = run(&system, &DormandPrince { tolerance: 1e-9 }, limits, &mut []).unwrap();
+        let outcome = run(&system, &Method::dormand_prince(1e-9), limits, &mut []).unwrap();
         let expected = rebound(&outcome.velocity_m_s, 0.18);
         let slow = SlowPhase { friction_coefficient: 0.0, longest_s: 2e-4, ..SlowPhase::default() };
         let mut state = State::start(&system);

@@ -167,10 +167,10 @@ fn the_same_tap_gives_the_same_bits() {
 
 fn shot(system: &System, tolerance: f64) -> (f64, f64, Outcome) {
     use hertzchain_chain::observe::Passages;
-    use hertzchain_chain::wave::{DormandPrince, Limits, run};
+    use hertzchain_chain::wave::{Limits, Method, run};
     let mut passages = Passages::new(7, 40, true);
     let limits = Limits::until(5e-3);
-    let method = DormandPrince { tolerance };
+    let method = Method::dormand_prince(tolerance);
     let outcome = run(system, &method, limits, &mut [&mut passages]).unwrap();
     let passage = passages.passage().unwrap();
     let (incident, reflected) = (passage.tof_incident_s(), passage.tof_reflected_s());
@@ -195,7 +195,7 @@ fn a_row_at_rest_stays_at_rest_until_the_wave_comes() {
     let shot = system.from_state(&state).unwrap();
     assert_eq!(State::start(&shot), state);
     let limits = wave::Limits::until(3e-4);
-    let method = wave::DormandPrince { tolerance: 1e-6 };
+    let method = wave::Method::dormand_prince(1e-6);
     let outcome = wave::run(&shot, &method, limits, &mut []).unwrap();
     // The wave runs at some 600 m/s, a bead in 20 µs: it has not come half-way.
     // Bead 40 knows of it by its forerunner at most.

@@ -3,7 +3,7 @@
 use crate::common::*;
 use hertzchain_chain::laws::{DampingCubic, DampingCubicUngated, DampingLinear, law};
 use hertzchain_chain::observe::{Apart, Signal};
-use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, Verlet, run};
+use hertzchain_chain::wave::{Limits, Method, Outcome, run};
 use hertzchain_chain::*;
 
 fn at(chain: &Chain, tolerance: f64, duration_s: f64, whole_chain: bool) -> Outcome {
@@ -14,7 +14,7 @@ fn at(chain: &Chain, tolerance: f64, duration_s: f64, whole_chain: bool) -> Outc
         force_passes: Some(2_000_000),
         ..Limits::until(duration_s)
     };
-    run(&system, &DormandPrince { tolerance }, limits, &mut []).unwrap()
+    run(&system, &Method::dormand_prince(tolerance), limits, &mut []).unwrap()
 }
 
 fn gap(contact: usize, gap_m: f64) -> Gap {
@@ -88,7 +88,7 @@ fn a_maximum_at_a_force_jump_out_of_silence_is_seen() {
     };
     let system = System::new(&chain).unwrap();
     let (mut wall, mut bead) = (Signal::new(Sensor::Contact(5)), Signal::new(Sensor::Velocity(5)));
-    let method = DormandPrince { tolerance: 1e-9 };
+    let method = Method::dormand_prince(1e-9);
     run(&system, &method, Limits::until(3e-4), &mut [&mut wall, &mut bead]).unwrap();
     let speed = bead.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
     let peak = wall.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
@@ -99,7 +99,7 @@ fn a_maximum_at_a_force_jump_out_of_silence_is_seen() {
 fn a_shot_between_free_ends_ends_when_all_fly_apart() {
     let chain = Chain { far: FarEnd::Free, ..row(2, 0.5, vec![hertz()]) };
     let system = System::new(&chain).unwrap();
-    let method = DormandPrince { tolerance: 1e-8 };
+    let method = Method::dormand_prince(1e-8);
     let outcome = run(&system, &method, Limits::until(0.1), &mut [&mut Apart]).unwrap();
     assert!(outcome.finished && outcome.time_s < 1e-3);
 }
@@ -112,7 +112,7 @@ fn every_bead_of_a_ring_has_a_sensor() {
     let system = System::new(&chain).unwrap();
     let mut first = Signal::new(Sensor::Bead(1));
     let mut nowhere = Signal::new(Sensor::Bead(0));
-    let method = DormandPrince { tolerance: 1e-8 };
+    let method = Method::dormand_prince(1e-8);
     run(&system, &method, Limits::until(20.0), &mut [&mut first, &mut nowhere]).unwrap();
     assert!(!first.maxima().is_empty());
     assert!(nowhere.maxima().is_empty());
@@ -148,7 +148,7 @@ fn the_window_changes_no_bit_of_a_fixed_step_method_either() {
     let system = System::new(&row(60, 0.5, laws)).unwrap();
     let shot = |whole_chain| {
         let limits = Limits { whole_chain, ..Limits::until(5e-4) };
-        run(&system, &Verlet { step_s: 1e-7 }, limits, &mut []).unwrap().velocity_m_s
+        run(&system, &Method::verlet(1e-7), limits, &mut []).unwrap().velocity_m_s
     };
     assert_eq!(shot(true), shot(false));
 }
@@ -157,14 +157,14 @@ fn the_window_changes_no_bit_of_a_fixed_step_method_either() {
 fn settings_and_motions_that_mean_nothing_are_refused() {
     let system = System::new(&row(3, 0.5, vec![hertz()])).unwrap();
     for step_s in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(run(&system, &Verlet { step_s }, Limits::until(1e-5), &mut []).is_err());
+        assert!(run(&system, &Method::verlet(step_s), Limits::until(1e-5), &mut []).is_err());
     }
     for tolerance in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
-        let method = DormandPrince { tolerance };
+        let method = Method::dormand_prince(tolerance);
         assert!(run(&system, &method, Limits::until(1e-5), &mut []).is_err());
     }
     let endless = Limits { force_passes: Some(1000), ..Limits::until(f64::INFINITY) };
-    assert!(run(&system, &DormandPrince { tolerance: 1e-6 }, endless, &mut []).is_err());
+    assert!(run(&system, &Method::dormand_prince(1e-6), endless, &mut []).is_err());
     let tables = [
         (vec![0.0, 1.0], vec![0.0]),
         (vec![1.0, 0.0], vec![0.0, 1.0]),

@@ -2,13 +2,13 @@
 
 use crate::common::*;
 use hertzchain_chain::observe::{Maximum, Signal};
-use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, run};
+use hertzchain_chain::wave::{Limits, Method, Outcome, run};
 use hertzchain_chain::*;
 
 fn run_window(chain: &Chain, duration_s: f64, whole_chain: bool) -> Outcome {
     let system = System::new(chain).unwrap();
     let limits = Limits { whole_chain, ..Limits::until(duration_s) };
-    run(&system, &DormandPrince { tolerance: 1e-7 }, limits, &mut []).unwrap()
+    run(&system, &Method::dormand_prince(1e-7), limits, &mut []).unwrap()
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn a_pulse_keeps_speed_and_amplitude_over_a_hundred_thousand_beads() {
     let mut early = Signal::new(Sensor::Velocity(100));
     let mut late = Signal::new(Sensor::Velocity(beads - 20));
     let duration = beads as f64 / 0.840_508_77;
-    let method = DormandPrince { tolerance: 3e-11 };
+    let method = Method::dormand_prince(3e-11);
     let outcome =
         run(&system, &method, Limits::until(duration), &mut [&mut early, &mut late]).unwrap();
     let (first, last) = (early.maxima()[0], late.maxima()[0]);
@@ -87,7 +87,7 @@ fn a_second_clock_for_what_creeps_changes_nothing_that_matters_and_saves_work() 
         let fly = |whole_chain: bool| {
             let mut sensor = Signal::new(Sensor::Bead(400));
             let limits = Limits { whole_chain, budget: true, ..Limits::until(1.9e-2) };
-            let method = DormandPrince { tolerance: 3e-9 };
+            let method = Method::dormand_prince(3e-9);
             let limits = Limits { slow_tolerance: Some(1e-7), ..limits };
             let outcome = run(&system, &method, limits, &mut [&mut sensor]).unwrap();
             let residual = outcome.budget.unwrap().relative_residual();

@@ -1,7 +1,7 @@
 //! Which K a damping law has that shares it with the elastic contact.
 
 use hertzchain_chain::laws::{LAWS, Nature, Source};
-use hertzchain_chain::wave::{DormandPrince, Limits, run};
+use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_chain::{Chain, System};
 use hertzchain_experiment::{Experiment, Mistakes};
 use std::f64::consts::PI;
@@ -91,7 +91,7 @@ fn restitution_of_a_stiff_dimensionless_contact_is_tsuji_s_closed_form() {
     let laws = "{ law = \"elastic_hertz\", stiffness = 4 }, \
                 { law = \"damping_tsuji\", damping_ratio = 0.5 }";
     let system = System::new(&chain(dimensionless(laws))).unwrap();
-    let scheme = DormandPrince { tolerance: 1e-11 };
+    let scheme = Method::dormand_prince(1e-11);
     // A contact of K = 4 and m = 1 is over after about 2.
     let outcome = run(&system, &scheme, Limits::until(10.0), &mut []).unwrap();
     let restitution = outcome.velocity_m_s[1] - outcome.velocity_m_s[0];

@@ -3,7 +3,7 @@
 use crate::duration::has_wall;
 use crate::plan::{Pick, Plan, Solver};
 use hertzchain_chain::ensemble::Precision;
-use hertzchain_chain::wave::{DormandPrince, Method, Rk4, Verlet};
+use hertzchain_chain::wave::Method;
 use hertzchain_chain::{Start, System, Tension};
 
 /// Tightest tolerance per step: below it rounding, not the step, decides.
@@ -179,8 +179,8 @@ pub(crate) fn precision(plan: &Plan, system: &System) -> Precision {
 }
 
 /// The adaptive solver at a tolerance.
-pub fn adaptive(tolerance: f64) -> Box<dyn Method> {
-    Box::new(DormandPrince { tolerance })
+pub fn adaptive(tolerance: f64) -> Method {
+    Method::dormand_prince(tolerance)
 }
 
 /// The step in s that a search for a fixed step begins with.
@@ -188,10 +188,10 @@ pub(crate) fn first_step_s(system: &System) -> f64 {
     FIRST_STEP * system.scales().time_s
 }
 
-pub(crate) fn fixed(solver: Solver, step_s: f64) -> Box<dyn Method> {
+pub(crate) fn fixed(solver: Solver, step_s: f64) -> Method {
     match solver {
-        Solver::Verlet { .. } => Box::new(Verlet { step_s }),
-        Solver::Rk4 { .. } | Solver::Adaptive => Box::new(Rk4 { step_s }),
+        Solver::Verlet { .. } => Method::verlet(step_s),
+        Solver::Rk4 { .. } | Solver::Adaptive => Method::rk4(step_s),
     }
 }
 

@@ -196,7 +196,7 @@ impl<'a> PreparedShot<'a> {
     /// A run at a tolerance other than the plan's own.
     fn tightened(&self, tolerance: f64, sampled: bool) -> Result<Shot, StudyError> {
         let slow = self.accuracy_at(tolerance) * accuracy::of_times(self.plan) / self.plan.accuracy;
-        let mut shot = self.integrate(&*accuracy::adaptive(tolerance), sampled, slow)?;
+        let mut shot = self.integrate(&accuracy::adaptive(tolerance), sampled, slow)?;
         shot.tolerance = Some(tolerance);
         Ok(shot)
     }
@@ -210,7 +210,7 @@ impl<'a> PreparedShot<'a> {
     fn balanced(&self, mut tolerance: f64) -> Result<(Shot, f64), StudyError> {
         let mut tries = 1;
         loop {
-            let mut shot = self.once(&*accuracy::adaptive(tolerance), self.plan.watch.is_some())?;
+            let mut shot = self.once(&accuracy::adaptive(tolerance), self.plan.watch.is_some())?;
             shot.tolerance = Some(tolerance);
             let excess = residual(&shot) / self.plan.accuracy;
             if excess.is_nan() || excess <= 1.0 || tolerance <= TIGHTEST || tries == MOST_TRIES {
@@ -299,7 +299,7 @@ impl<'a> PreparedShot<'a> {
         Err(StudyError::NotConverged(format!(
             "{} does not reach an accuracy of {:e}: halving its step down to {:.3e} s still changes the result by \
              {:.1e}, last seen at t = {time_s:.4e} s in contact {contact}; ask for less accuracy or use the adaptive solver",
-            accuracy::fixed(solver, first_s).name(),
+            accuracy::fixed(solver, first_s).name,
             self.plan.accuracy,
             step_s(MOST_HALVINGS),
             halvings.last(),
@@ -350,7 +350,7 @@ impl<'a> PreparedShot<'a> {
     }
 
     fn at_step(&self, solver: Solver, step_s: f64, sampled: bool) -> Result<Shot, StudyError> {
-        let mut shot = self.once(&*accuracy::fixed(solver, step_s), sampled)?;
+        let mut shot = self.once(&accuracy::fixed(solver, step_s), sampled)?;
         shot.step_s = Some(step_s);
         Ok(shot)
     }
@@ -365,14 +365,14 @@ impl<'a> PreparedShot<'a> {
         }
     }
 
-    fn once(&self, method: &dyn Method, sampled: bool) -> Result<Shot, StudyError> {
+    fn once(&self, method: &Method, sampled: bool) -> Result<Shot, StudyError> {
         self.integrate(method, sampled, accuracy::of_times(self.plan))
     }
 
     /// The same with a tolerance for bodies of long chains that move slowly.
     fn integrate(
         &self,
-        method: &dyn Method,
+        method: &Method,
         sampled: bool,
         slow_tolerance: f64,
     ) -> Result<Shot, StudyError> {
@@ -448,7 +448,7 @@ impl<'a> PreparedShot<'a> {
 
     fn shot(
         &self,
-        method: &dyn Method,
+        method: &Method,
         outcome: Outcome,
         tracker: &Tracker,
         separation: Separation,
@@ -481,7 +481,7 @@ impl<'a> PreparedShot<'a> {
             work: outcome.work,
             other_picks: other_picks.unwrap_or_default(),
             notes: Vec::from_iter(tracker.decided_s().map(|_| DECIDED.to_owned())),
-            ..Shot::picked(self.plan, passages, passage, outcome.time_s, method.name())
+            ..Shot::picked(self.plan, passages, passage, outcome.time_s, method.name)
         }
     }
 }

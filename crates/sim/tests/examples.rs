@@ -2,7 +2,7 @@
 //! integrated (`bench/reference/numbers.json`), never against stored output.
 
 use hertzchain_chain::observe::{Maximum, Signal};
-use hertzchain_chain::wave::{DormandPrince, Limits, Observer, Outcome, run};
+use hertzchain_chain::wave::{Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Chain, Motion, Push, Sensor, Start, System};
 use hertzchain_experiment::{Experiment, preset, presets};
 use hertzchain_sim::{Flight, Plan, shoot};
@@ -42,7 +42,7 @@ fn watch(chain: &Chain, sensors: &[Sensor], duration_s: f64) -> (Vec<Signal>, Ou
     let mut signals: Vec<Signal> = sensors.iter().map(|&sensor| Signal::new(sensor)).collect();
     let mut observers: Vec<&mut dyn Observer> =
         signals.iter_mut().map(|signal| signal as &mut dyn Observer).collect();
-    let method = DormandPrince { tolerance: 3e-10 };
+    let method = Method::dormand_prince(3e-10);
     let outcome = run(&system, &method, Limits::until(duration_s), &mut observers).unwrap();
     (signals, outcome)
 }

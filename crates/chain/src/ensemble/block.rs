@@ -7,9 +7,9 @@ use super::changes::{Changes, Opening};
 use super::column::{LaneColumn, chunks};
 use super::edge::{Edge, Leading};
 use super::number::Number;
-use super::section::{Place, Sweep, section};
+use super::section::{Sweep, SweepPlace, section};
 use super::weights::{Schedule, USED, ahead_of};
-use super::window::{Places, Window};
+use super::window::{LaneWindow, Places};
 use crate::chain::Tension;
 use crate::instruction_set::InstructionSet;
 use crate::laws::Closed;
@@ -57,7 +57,7 @@ pub(super) struct Block<'a, N, const W: usize> {
     sections: Vec<Box<dyn Sweep<N, W>>>,
     /// Dynamic force of contact c at (c + 1) · lanes; 0 before the first.
     force_n: Aligned<N>,
-    window: Window,
+    window: LaneWindow,
     changes: Option<Changes<W>>,
     /// Edges that still disturb steps: where, the edge, steps since.
     edges: Vec<(usize, Edge, usize)>,
@@ -113,7 +113,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         });
         let fixed = systems.iter().all(|system| system.ends_fixed());
         let moving = bodies - usize::from(fixed);
-        let window = Window::new((lanes, chains), (&x, &v), moving, whole_chain);
+        let window = LaneWindow::new((lanes, chains), (&x, &v), moving, whole_chain);
         let inverse_mass = LaneColumn::new(moving, shared, 0.0, |j, lane| {
             chains[lane].inverse_mass[j] / unit_per_kg(chains[lane])
         });
@@ -205,7 +205,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             None if !fresh => force[flat].fill(N::default()),
             None => {}
         }
-        let place = Place {
+        let place = SweepPlace {
             offset_m: &self.offset_m,
             slightest_m: self.slightest_m,
             lanes,
@@ -215,8 +215,9 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
             x: &self.motion.x,
             v: &self.motion.v,
         };
+        let open = self.changes.as_mut().map(|changes| &mut changes.now[..]).unwrap_or_default();
         for section in &mut self.sections {
-            section.add(self.set, &place, force);
+            section.add(self.set, &place, force, open);
         }
         if self.systems[0].periodic {
             let last = self.systems[0].contacts() * lanes;
@@ -250,7 +251,7 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     /// Finds openings and closings within the last step.
     fn look_at_changes(&mut self, mut changes: Changes<W>, follow: bool) {
         let awake = self.window.contacts.clone();
-        let changed = changes.look(self.set, (awake, self.lanes), &self.offset_m, &self.motion.x);
+        let changed = changes.look(awake);
         if follow && self.steps > self.schedule.last_row() {
             for &at in changed {
                 if let Some(edge) = self.edge(at) {

@@ -5,7 +5,7 @@ use super::aligned::Aligned;
 use super::column::LaneColumn;
 use super::number::Number;
 use super::weights::{EARLIER, USED, Weights};
-use super::window::Window;
+use super::window::LaneWindow;
 use crate::system::System;
 use fearless_simd::prelude::*;
 use std::ops::Range;
@@ -107,7 +107,7 @@ impl<N: Number<W>, const W: usize> LaneMotion<N, W> {
     pub(super) fn step<S: Simd>(
         &mut self,
         simd: S,
-        window: &Window,
+        window: &LaneWindow,
         lanes: usize,
         force: &[N],
         scaled: &LaneScaled<N, W>,

@@ -1,22 +1,24 @@
 //! Openings and closings between two steps.
 
-use super::column::LaneColumn;
-use super::number::Number;
-use crate::instruction_set::InstructionSet;
-use fearless_simd::{dispatch, prelude::*};
 use std::ops::Range;
 
 /// Which contacts are open, and those that have changed.
 #[derive(Clone, Debug)]
 pub(super) struct Changes<const W: usize> {
-    /// A bit for each contact of a chunk.
+    /// A bit for each contact of a chunk, as the force pass has seen it now.
+    pub now: Vec<u64>,
+    /// The same at the last look.
     open: Vec<u64>,
     changed: Vec<usize>,
 }
 
 impl<const W: usize> Changes<W> {
     pub(super) fn new(chunks: usize) -> Self {
-        Self { open: vec![0; chunks], changed: Vec::with_capacity(chunks * W) }
+        Self {
+            now: vec![0; chunks],
+            open: vec![0; chunks],
+            changed: Vec::with_capacity(chunks * W),
+        }
     }
 
     /// A contact, by its place in the flat array, is open from now on.
@@ -24,45 +26,18 @@ impl<const W: usize> Changes<W> {
         self.open[at / W] |= 1 << (at % W);
     }
 
-    /// Notes what has changed since the last look.
-    pub(super) fn look<N: Number<W>>(
-        &mut self,
-        set: InstructionSet,
-        (awake, lanes): (Range<usize>, usize),
-        offset_m: &LaneColumn<N, W>,
-        x: &[N],
-    ) -> &[usize] {
+    /// Notes what has changed since the last look among some chunks.
+    pub(super) fn look(&mut self, awake: Range<usize>) -> &[usize] {
         self.changed.clear();
-        dispatch!(set.level(), simd => simd.vectorize(
-            #[inline(always)]
-            || self.compare(simd, (awake, lanes), offset_m, x)
-        ));
-        &self.changed
-    }
-
-    #[inline(always)]
-    fn compare<S: Simd, N: Number<W>>(
-        &mut self,
-        simd: S,
-        (awake, lanes): (Range<usize>, usize),
-        offset_m: &LaneColumn<N, W>,
-        x: &[N],
-    ) {
-        let left = x[..awake.end * W].as_chunks::<W>().0;
-        let right = x[lanes..][..awake.end * W].as_chunks::<W>().0;
-        let offset_m = offset_m.reader();
-        let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
-        let zero = N::Wide::<S>::simd_from(simd, N::default());
         for i in awake {
-            let depth = load(offset_m.at(i)) - (load(&right[i]) - load(&left[i]));
-            let open = depth.simd_lt(zero).to_bitmask();
-            let mut changed = open ^ self.open[i];
-            self.open[i] = open;
+            let mut changed = self.now[i] ^ self.open[i];
+            self.open[i] = self.now[i];
             while changed != 0 {
                 self.changed.push(i * W + changed.trailing_zeros() as usize);
                 changed &= changed - 1;
             }
         }
+        &self.changed
     }
 }
 

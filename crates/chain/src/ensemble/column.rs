@@ -64,18 +64,18 @@ impl<N: Number<W>, const W: usize> LaneColumn<N, W> {
     }
 
     #[inline(always)]
-    pub(super) fn reader(&self) -> Reader<'_, N, W> {
-        Reader { chunks: self.values.as_chunks().0, stride: self.stride }
+    pub(super) fn reader(&self) -> ColumnReader<'_, N, W> {
+        ColumnReader { chunks: self.values.as_chunks().0, stride: self.stride }
     }
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Reader<'a, N, const W: usize> {
+pub(super) struct ColumnReader<'a, N, const W: usize> {
     chunks: &'a [[N; W]],
     stride: usize,
 }
 
-impl<'a, N, const W: usize> Reader<'a, N, W> {
+impl<'a, N, const W: usize> ColumnReader<'a, N, W> {
     #[inline(always)]
     pub(super) fn all(&self) -> &'a [[N; W]] {
         self.chunks

@@ -116,21 +116,12 @@ const RESERVED: usize = 1 << 16;
 
 /// Fires shots, side by side where chains have the same shape; one that fails stops no other.
 pub fn fire(shots: &[Shot<'_>], settings: &Settings) -> Vec<Result<LaneResult, SolveError>> {
-    fire_while(shots, settings, &|| true)
-}
-
-/// The same for as long as `wanted` says so, which is asked every few steps; what has not ended then
-/// is [`SolveError::BrokenOff`].
-pub fn fire_while(
-    shots: &[Shot<'_>],
-    settings: &Settings,
-    wanted: &dyn Fn() -> bool,
-) -> Vec<Result<LaneResult, SolveError>> {
-    fire_each(shots, settings, wanted, |_, lane| lane)
+    fire_each(shots, settings, &|| true, |_, lane| lane)
 }
 
 /// The same, of each shot only what `kept` makes of it, by its place in the list: signals take
-/// memory, and those of one shot at a time are held.
+/// memory, and those of one shot at a time are held. It goes on for as long as `wanted` says so,
+/// which is asked every few steps; what has not ended then is [`SolveError::BrokenOff`].
 pub fn fire_each<T>(
     shots: &[Shot<'_>],
     settings: &Settings,
@@ -154,25 +145,6 @@ pub fn fire_each<T>(
         }
     }
     all.into_iter().flatten().collect()
-}
-
-/// Computes the forces of all contacts again and again, of as many copies of a
-/// chain as run side by side: what a force pass costs, for benches.
-#[doc(hidden)]
-pub fn repeat_force_pass(system: &System, precision: Precision, set: InstructionSet, times: usize) {
-    match precision {
-        Precision::Double => repeat::<f64, 8>(system, set, times),
-        Precision::Single => repeat::<f32, 16>(system, set, times),
-    }
-}
-
-fn repeat<N: Number<W>, const W: usize>(system: &System, set: InstructionSet, times: usize) {
-    let (systems, whole_chain) = ([system; W], (true, false));
-    let steps_s = [system.scales().time_s; W];
-    let mut block = Block::<N, W>::new(&systems, &steps_s, Schedule::shared(), set, whole_chain);
-    for _ in 0..times {
-        block.forces();
-    }
 }
 
 /// Shots alike in precision and in the shape of their chains, as many together
@@ -223,11 +195,11 @@ struct Lane {
     last_step: usize,
     correction: f64,
     velocity_m_s: Vec<f64>,
-    state: State,
+    state: LaneState,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum State {
+enum LaneState {
     Flying,
     Finished { step: usize, early: bool },
     Failed { step: usize },
@@ -306,7 +278,7 @@ fn fly<N: Number<W>, const W: usize>(
     let leaves = settings.end == End::Passed && systems.iter().all(|s| s.flies_free());
     let (count, contacts) = (systems.len(), systems[0].contacts());
     let mut behind = leaves.then(|| Behind::new(count, contacts, &settings.sensors));
-    while lanes.iter().any(|lane| lane.state == State::Flying) {
+    while lanes.iter().any(|lane| lane.state == LaneState::Flying) {
         if !wanted() {
             lanes.iter_mut().for_each(|lane| lane.break_off(block.steps));
             return;
@@ -329,7 +301,7 @@ fn fly<N: Number<W>, const W: usize>(
             }
         }
         for (at, lane) in lanes.iter_mut().enumerate() {
-            if lane.state == State::Flying {
+            if lane.state == LaneState::Flying {
                 lane.look(block, recorder, at, settings.end, systems[at]);
                 lane.give_up(block, at);
             }
@@ -348,22 +320,22 @@ impl Lane {
             last_step,
             correction: 0.0,
             velocity_m_s: Vec::with_capacity(bodies),
-            state: State::Flying,
+            state: LaneState::Flying,
         }
     }
 
     fn correct(&mut self, step: usize, correction: f64) {
-        if self.state == State::Flying {
+        if self.state == LaneState::Flying {
             self.correction = self.correction.max(correction);
             if !correction.is_finite() {
-                self.state = State::Failed { step };
+                self.state = LaneState::Failed { step };
             }
         }
     }
 
     fn break_off(&mut self, step: usize) {
-        if self.state == State::Flying {
-            self.state = State::BrokenOff { step };
+        if self.state == LaneState::Flying {
+            self.state = LaneState::BrokenOff { step };
         }
     }
 
@@ -383,30 +355,30 @@ impl Lane {
         };
         if early || step >= self.last_step {
             self.velocity_m_s.extend(block.velocities(at));
-            self.state = State::Finished { step, early };
+            self.state = LaneState::Finished { step, early };
         }
     }
 
     /// Gives up what takes too many steps: at once where bodies only fly until then.
     fn give_up<N: Number<W>, const W: usize>(&mut self, block: &Block<'_, N, W>, at: usize) {
         let step = block.steps;
-        if self.last_step <= MOST_STEPS || self.state != State::Flying {
+        if self.last_step <= MOST_STEPS || self.state != LaneState::Flying {
             return;
         }
         let look = step.is_multiple_of(LOOK_EVERY << 8);
         if step >= MOST_STEPS || look && block.fly_for(at) > MOST_STEPS as f64 {
-            self.state = State::TooLong { step };
+            self.state = LaneState::TooLong { step };
         }
     }
 
     /// Step at which the lane came to its end.
     fn ended(&self) -> usize {
         match self.state {
-            State::Finished { step, .. }
-            | State::Failed { step }
-            | State::BrokenOff { step }
-            | State::TooLong { step } => step,
-            State::Flying => self.last_step,
+            LaneState::Finished { step, .. }
+            | LaneState::Failed { step }
+            | LaneState::BrokenOff { step }
+            | LaneState::TooLong { step } => step,
+            LaneState::Flying => self.last_step,
         }
     }
 
@@ -417,11 +389,11 @@ impl Lane {
         (looked_at, at_wall_n): (u64, f64),
     ) -> Result<LaneResult, SolveError> {
         let (step, finished) = match self.state {
-            State::Finished { step, early } => (step, early),
-            State::Flying => (self.last_step, false),
-            State::Failed { step } => return Err(diverged(clock, step)),
-            State::BrokenOff { .. } => return Err(SolveError::BrokenOff),
-            State::TooLong { step } => {
+            LaneState::Finished { step, early } => (step, early),
+            LaneState::Flying => (self.last_step, false),
+            LaneState::Failed { step } => return Err(diverged(clock, step)),
+            LaneState::BrokenOff { .. } => return Err(SolveError::BrokenOff),
+            LaneState::TooLong { step } => {
                 let time_s = clock.time_s(step);
                 let why = format!(
                     "a batch keeps {MOST_STEPS} steps of a shot, and this one, at t = {time_s:e} s, takes more"

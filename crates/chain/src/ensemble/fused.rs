@@ -6,51 +6,15 @@
 
 use super::column::LaneColumn;
 use super::number::Number;
-use super::section::{Place, Sweep};
-use super::touch::{LaneTouch, Sides};
+use super::section::{Sweep, SweepPlace};
+use super::touch::{LaneTouch, Sides, note_open};
 use crate::instruction_set::InstructionSet;
-use crate::laws::{
-    Arithmetic, Closed, DampingCubic, DampingViscoelastic, ElasticHertz, Split, Wide,
-};
 use fearless_simd::{dispatch, prelude::*};
-use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Most coefficients of a fused sum.
-const MOST: usize = 3;
-
-pub(super) trait Sum: Send + Sync + 'static {
-    /// Coefficients of all terms.
-    const COEFFICIENTS: usize;
-
-    /// Adds the forces of as many contacts as a number stands for.
-    fn add_to<N: Arithmetic>(sum: Split<N>, k: &[N], contact: Closed<N>) -> Split<N>;
-}
-
-struct One<T, const C: usize>(PhantomData<fn() -> T>);
-
-impl<T: Wide<C>, const C: usize> Sum for One<T, C> {
-    const COEFFICIENTS: usize = C;
-
-    #[inline(always)]
-    fn add_to<N: Arithmetic>(sum: Split<N>, k: &[N], contact: Closed<N>) -> Split<N> {
-        T::add_to(sum, std::array::from_fn(|j| k[j]), contact)
-    }
-}
-
-impl<A: Sum, B: Sum> Sum for (A, B) {
-    const COEFFICIENTS: usize = A::COEFFICIENTS + B::COEFFICIENTS;
-
-    #[inline(always)]
-    fn add_to<N: Arithmetic>(sum: Split<N>, k: &[N], contact: Closed<N>) -> Split<N> {
-        let (a, b) = k.split_at(A::COEFFICIENTS);
-        B::add_to(A::add_to(sum, a, contact), b, contact)
-    }
-}
-
-type Hertz = One<ElasticHertz, 1>;
-type Viscoelastic = (Hertz, One<DampingViscoelastic, 1>);
-type Dry = (Viscoelastic, One<DampingCubic, 1>);
+/// Laws that are fused, each with all those before it; each has one coefficient. Their forces
+/// stand in [`sum`] once more, for registers.
+const FUSED: [&str; 3] = ["elastic_hertz", "damping_viscoelastic", "damping_cubic"];
 
 /// The fast sweep over a section with these laws, in this order, if there is one.
 pub(super) fn fuse<N: Number<W>, const W: usize>(
@@ -61,53 +25,45 @@ pub(super) fn fuse<N: Number<W>, const W: usize>(
 ) -> Option<Box<dyn Sweep<N, W>>> {
     let first = contacts.start * lanes / W;
     let section = (contacts, first, coefficients);
-    Some(match laws {
-        ["elastic_hertz"] => Box::new(Fused::<Hertz, N, W>::new(section)),
-        ["elastic_hertz", "damping_viscoelastic"] => {
-            Box::new(Fused::<Viscoelastic, N, W>::new(section))
-        }
-        ["elastic_hertz", "damping_viscoelastic", "damping_cubic"] => {
-            Box::new(Fused::<Dry, N, W>::new(section))
-        }
-        _ => return None,
-    })
+    match laws.len() {
+        _ if !FUSED.starts_with(laws) => None,
+        1 => Some(Box::new(Fused::<N, W, 1>::new(section))),
+        2 => Some(Box::new(Fused::<N, W, 2>::new(section))),
+        3 => Some(Box::new(Fused::<N, W, 3>::new(section))),
+        _ => None,
+    }
 }
 
-/// A section whose laws are a fused sum.
-struct Fused<T, N, const W: usize> {
+/// A section of which the first `LAWS` fused laws act.
+struct Fused<N, const W: usize, const LAWS: usize> {
     contacts: Range<usize>,
     /// Chunk in which the section and its coefficients begin.
     first: usize,
     coefficients: Vec<LaneColumn<N, W>>,
-    sum: PhantomData<fn() -> T>,
 }
 
-impl<T: Sum, N: Number<W>, const W: usize> Fused<T, N, W> {
+impl<N: Number<W>, const W: usize, const LAWS: usize> Fused<N, W, LAWS> {
     fn new((contacts, first, coefficients): (Range<usize>, usize, Vec<LaneColumn<N, W>>)) -> Self {
-        Self { contacts, first, coefficients, sum: PhantomData }
+        Self { contacts, first, coefficients }
     }
 
     #[inline(always)]
     fn sweep<S: Simd>(
         &self,
         simd: S,
-        place: &Place<'_, N, W>,
+        place: &SweepPlace<'_, N, W>,
         chunks: Range<usize>,
-        force: &mut [N],
+        (force, open): (&mut [N], &mut [u64]),
     ) {
         let load = |chunk: &[N; W]| N::Wide::<S>::load_array_ref(simd, chunk);
-        // Places beyond the sum's own coefficients are never read.
-        let last = T::COEFFICIENTS - 1;
-        let column = |j: usize| &self.coefficients[j.min(last)];
-        let columns = [column(0), column(1), column(2)];
-        let same = |j: usize| columns[j].uniform();
-        if let (Some(a), Some(b), Some(c)) = (same(0), same(1), same(2)) {
+        let columns: [&LaneColumn<N, W>; LAWS] = std::array::from_fn(|j| &self.coefficients[j]);
+        if columns.iter().all(|column| column.uniform().is_some()) {
             // Loaded once, they stay in registers.
-            let k = [load(a), load(b), load(c)];
-            pass::<T, S, N, W>(simd, place, chunks, force, |_| k);
+            let k = columns.map(|column| load(column.reader().at(0)));
+            pass::<S, N, W, LAWS>(simd, place, chunks, (force, open), |_| k);
         } else {
             let columns = columns.map(LaneColumn::reader);
-            pass::<T, S, N, W>(simd, place, chunks, force, |i| {
+            pass::<S, N, W, LAWS>(simd, place, chunks, (force, open), |i| {
                 columns.map(|column| load(column.at(i - self.first)))
             });
         }
@@ -116,68 +72,81 @@ impl<T: Sum, N: Number<W>, const W: usize> Fused<T, N, W> {
 
 /// Forces of chunks of contacts whose coefficients `k` gives.
 #[inline(always)]
-fn pass<T: Sum, S: Simd, N: Number<W>, const W: usize>(
+fn pass<S: Simd, N: Number<W>, const W: usize, const LAWS: usize>(
     simd: S,
-    place: &Place<'_, N, W>,
+    place: &SweepPlace<'_, N, W>,
     chunks: Range<usize>,
-    force: &mut [N],
-    k: impl Fn(usize) -> [N::Wide<S>; MOST],
+    (force, open): (&mut [N], &mut [u64]),
+    k: impl Fn(usize) -> [N::Wide<S>; LAWS],
 ) {
     let first = chunks.start;
     let force = force[first * W..chunks.end * W].as_chunks_mut::<W>().0;
+    let open = open.get_mut(first..chunks.end).unwrap_or_default();
     let sides = Sides::new(place, first, force.len());
     // Loops of their own, so that what most steps need is all that they do.
     let plain = place.offset_m.is_all(0.0) && !place.starting;
-    match (plain, place.fresh) {
-        (true, true) => {
+    match (plain, place.fresh, open.is_empty()) {
+        (true, true, true) => {
             for (i, force) in force.iter_mut().enumerate() {
-                sum::<T, S, N, W>(simd, &k(first + i), sides.plain_touch(simd, i))
+                sum::<S, N, W, LAWS>(simd, k(first + i), sides.plain_touch(simd, i))
                     .store_array(force);
             }
         }
-        (_, true) => {
-            for (i, force) in force.iter_mut().enumerate() {
-                sum::<T, S, N, W>(simd, &k(first + i), sides.touch(simd, i)).store_array(force);
+        (true, true, false) => {
+            for (i, (force, open)) in force.iter_mut().zip(open).enumerate() {
+                let touch = sides.plain_touch(simd, i);
+                note_open::<S, N, W>(simd, Some(open), &touch);
+                sum::<S, N, W, LAWS>(simd, k(first + i), touch).store_array(force);
             }
         }
-        (_, false) => {
+        (_, fresh, _) => {
             for (i, force) in force.iter_mut().enumerate() {
+                let touch = sides.touch(simd, i);
+                note_open::<S, N, W>(simd, open.get_mut(i), &touch);
+                let more = sum::<S, N, W, LAWS>(simd, k(first + i), touch);
                 let before = N::Wide::<S>::load_array_ref(simd, force);
-                let more = sum::<T, S, N, W>(simd, &k(first + i), sides.touch(simd, i));
-                (before + more).store_array(force);
+                (if fresh { more } else { before + more }).store_array(force);
             }
         }
     }
 }
 
+/// √δ (K δ + A′ δ̇) + B δ̇³, or as many terms of it: products are added without being formed
+/// first, and √δ multiplies once.
 #[inline(always)]
-fn sum<T: Sum, S: Simd, N: Number<W>, const W: usize>(
+fn sum<S: Simd, N: Number<W>, const W: usize, const LAWS: usize>(
     simd: S,
-    k: &[N::Wide<S>],
+    k: [N::Wide<S>; LAWS],
     touch: LaneTouch<N::Wide<S>>,
 ) -> N::Wide<S> {
-    let contact = Closed {
-        overlap: touch.overlap,
-        root: touch.root,
-        rate: touch.rate,
-        largest: touch.overlap,
-    };
     // Minus 0 changes no sum and no sign: the compiler leaves it out.
     let none = N::Wide::<S>::simd_from(simd, N::of(-0.0));
-    let nothing = Split { rooted: none, plain: none };
-    let Split { rooted, plain } = T::add_to(nothing, k, contact);
+    let mut rooted = k[0].mul_add(touch.overlap, none);
+    let mut plain = none;
+    if LAWS > 1 {
+        rooted = k[1].mul_add(touch.rate, rooted);
+    }
+    if LAWS > 2 {
+        plain = (k[2] * touch.rate).mul_add(touch.rate * touch.rate, none);
+    }
     touch.root.mul_add(rooted, plain)
 }
 
-impl<T: Sum, N: Number<W>, const W: usize> Sweep<N, W> for Fused<T, N, W> {
-    fn add(&mut self, set: InstructionSet, place: &Place<'_, N, W>, force: &mut [N]) {
+impl<N: Number<W>, const W: usize, const LAWS: usize> Sweep<N, W> for Fused<N, W, LAWS> {
+    fn add(
+        &mut self,
+        set: InstructionSet,
+        place: &SweepPlace<'_, N, W>,
+        force: &mut [N],
+        open: &mut [u64],
+    ) {
         let chunks = place.chunks(&self.contacts);
         if chunks.is_empty() {
             return;
         }
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
-            || self.sweep(simd, place, chunks.clone(), force)
+            || self.sweep(simd, place, chunks.clone(), (force, open))
         ));
     }
 }

@@ -27,7 +27,5 @@ mod touch;
 mod weights;
 mod window;
 
-#[doc(hidden)]
-pub use fire::repeat_force_pass;
-pub use fire::{LaneResult, Precision, Settings, Shot, fire, fire_each, fire_while};
+pub use fire::{LaneResult, Precision, Settings, Shot, fire, fire_each};
 pub use passing::End;

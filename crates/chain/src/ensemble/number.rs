@@ -1,7 +1,6 @@
 //! What lanes are made of: double precision, eight numbers to a cache line, or
 //! single, sixteen.
 
-use crate::laws::Arithmetic;
 use crate::system::FLUSH;
 use fearless_simd::{SimdFloatElement, f32x16, f64x8, prelude::*};
 use std::fmt::Debug;
@@ -24,7 +23,7 @@ pub(super) trait Number<const W: usize>:
     + 'static
 {
     /// A chunk of them.
-    type Wide<S: Simd>: SimdFloat<S, Element = Self, Array = [Self; W]> + Arithmetic;
+    type Wide<S: Simd>: SimdFloat<S, Element = Self, Array = [Self; W]>;
 
     /// Half the distance from 1 to the next number.
     const ROUNDING: f64;
@@ -44,20 +43,6 @@ pub(super) trait Number<const W: usize>:
 
     /// √d of numbers that are 0 or normal, where bits say that they are not 0.
     fn roots<S: Simd>(simd: S, d: Self::Wide<S>, positive: u64) -> Self::Wide<S>;
-}
-
-impl<S: Simd> Arithmetic for f64x8<S> {
-    #[inline(always)]
-    fn times_plus(self, factor: Self, rest: Self) -> Self {
-        self.mul_add(factor, rest)
-    }
-}
-
-impl<S: Simd> Arithmetic for f32x16<S> {
-    #[inline(always)]
-    fn times_plus(self, factor: Self, rest: Self) -> Self {
-        self.mul_add(factor, rest)
-    }
 }
 
 impl Number<8> for f64 {

@@ -36,12 +36,12 @@ const RETURNED: f64 = 0.1;
 const MARGIN: usize = 8;
 
 #[derive(Clone, Copy, Debug, Default)]
-struct Peak {
+struct SamplePeak {
     value: f64,
     step: usize,
 }
 
-impl Peak {
+impl SamplePeak {
     fn look(&mut self, value: f64, step: usize) -> bool {
         let larger = value > self.value;
         if larger {
@@ -54,10 +54,10 @@ impl Peak {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Passing {
     least: f64,
-    highest: Peak,
-    incident: Peak,
-    wall: Peak,
-    returned: Peak,
+    highest: SamplePeak,
+    incident: SamplePeak,
+    wall: SamplePeak,
+    returned: SamplePeak,
     now: f64,
     seen: usize,
 }
@@ -96,7 +96,7 @@ impl Passing {
                 latest = [now, after];
                 let higher = |wall: f64| self.is_pulse(wall, at) && self.wall.look(wall, at);
                 if at_wall && pressed.next().is_some_and(higher) {
-                    (self.incident, self.returned) = (self.highest, Peak::default());
+                    (self.incident, self.returned) = (self.highest, SamplePeak::default());
                 }
             }
         }

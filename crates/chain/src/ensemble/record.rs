@@ -8,7 +8,7 @@ use fearless_simd::{dispatch, prelude::*};
 
 /// What one sensor showed, from step 1 on.
 #[derive(Clone, Debug)]
-struct Rows<N, const W: usize> {
+struct SensorRows<N, const W: usize> {
     values: Vec<N>,
     /// Largest of each lane between the last two looks.
     crest: [N; W],
@@ -18,7 +18,7 @@ struct Rows<N, const W: usize> {
 pub(super) struct Recorder<N, const W: usize> {
     lanes: usize,
     sensors: Vec<Sensor>,
-    rows: Vec<Rows<N, W>>,
+    rows: Vec<SensorRows<N, W>>,
 }
 
 /// Extremes of a sensor and shot for which room is made.
@@ -27,7 +27,7 @@ const EXPECTED: usize = 32;
 impl<N: Number<W>, const W: usize> Recorder<N, W> {
     /// With room for `steps` samples, so that the loop allocates nothing.
     pub(super) fn new(sensors: &[Sensor], lanes: usize, steps: usize) -> Self {
-        let rows = |_: &Sensor| Rows {
+        let rows = |_: &Sensor| SensorRows {
             values: Vec::with_capacity((steps + 1) * lanes),
             crest: [N::default(); W],
         };
@@ -57,7 +57,7 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
     /// Finds what each lane's sensors have shown at most in the last steps.
     #[inline(always)]
     pub(super) fn look<S: Simd>(&mut self, simd: S, steps: usize) {
-        for Rows { values, crest } in &mut self.rows {
+        for SensorRows { values, crest } in &mut self.rows {
             let first = values.len() - steps * self.lanes;
             let mut most = N::Wide::<S>::simd_from(simd, N::default());
             let (chunks, rest) = values[first..].as_chunks::<W>();
@@ -118,7 +118,7 @@ impl<N: Number<W>, const W: usize> Recorder<N, W> {
 /// Samples of one sensor in one lane, from step 1 on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Samples<'a, N, const W: usize> {
-    rows: &'a Rows<N, W>,
+    rows: &'a SensorRows<N, W>,
     lanes: usize,
     lane: usize,
 }

@@ -3,17 +3,17 @@
 use super::column::{LaneColumn, chunks};
 use super::fused::fuse;
 use super::number::Number;
-use super::touch::Sides;
+use super::touch::{Sides, note_open};
 use crate::chain::Tension;
 use crate::instruction_set::InstructionSet;
-use crate::laws::{Columns, Contacts};
-use crate::system::{SectionColumns, System, TermColumns};
+use crate::laws::Columns;
+use crate::system::{SectionColumns, System, TermColumns, TouchColumns};
 use fearless_simd::{Simd, dispatch, prelude::*};
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Where all bodies are, and which of them move.
-pub(super) struct Place<'a, N, const W: usize> {
+pub(super) struct SweepPlace<'a, N, const W: usize> {
     pub offset_m: &'a LaneColumn<N, W>,
     /// Overlaps of this size and less are none.
     pub slightest_m: [N; W],
@@ -28,7 +28,7 @@ pub(super) struct Place<'a, N, const W: usize> {
     pub v: &'a [N],
 }
 
-impl<N, const W: usize> Place<'_, N, W> {
+impl<N, const W: usize> SweepPlace<'_, N, W> {
     /// The chunks that are awake among some contacts.
     pub(super) fn chunks(&self, contacts: &Range<usize>) -> Range<usize> {
         let end = chunks::<W>(contacts.end, self.lanes).min(self.awake.end);
@@ -39,8 +39,15 @@ impl<N, const W: usize> Place<'_, N, W> {
 
 /// Sets, or adds to, the forces of a section's contacts.
 pub(super) trait Sweep<N, const W: usize>: Send {
-    /// The first element of `force` is contact 0 of lane 0.
-    fn add(&mut self, set: InstructionSet, place: &Place<'_, N, W>, force: &mut [N]);
+    /// The first element of `force` is contact 0 of lane 0. In `open` each chunk has bits of
+    /// which contacts are open; it is empty where nothing follows that.
+    fn add(
+        &mut self,
+        set: InstructionSet,
+        place: &SweepPlace<'_, N, W>,
+        force: &mut [N],
+        open: &mut [u64],
+    );
 }
 
 /// The sweep over section `index` of systems that share their shape.
@@ -88,11 +95,7 @@ struct Unfused {
     clipped: bool,
     /// Flat index of the chunk in which the section begins.
     first: usize,
-    overlap: Vec<f64>,
-    root: Vec<f64>,
-    rate: Vec<f64>,
-    across: Vec<f64>,
-    largest: Vec<f64>,
+    touch: TouchColumns,
     sum: Vec<f64>,
 }
 
@@ -112,11 +115,10 @@ impl Unfused {
         let (lanes, contacts) = (sections.len(), sections[0].contacts.clone());
         let first = contacts.start * lanes / width * width;
         let count = (contacts.end * lanes).next_multiple_of(width) - first;
-        let numbers = || vec![0.0; count];
-        let mut largest = numbers();
+        let mut touch = TouchColumns::new(count);
         for c in contacts.clone() {
             for (lane, system) in systems.iter().enumerate() {
-                largest[c * lanes + lane - first] = system.offset_m[c].max(0.0);
+                touch.largest[c * lanes + lane - first] = system.offset_m[c].max(0.0);
             }
         }
         Self {
@@ -125,75 +127,64 @@ impl Unfused {
             clipped: systems[0].tension == Tension::Clipped,
             contacts,
             first,
-            overlap: numbers(),
-            root: numbers(),
-            rate: numbers(),
-            across: numbers(),
-            sum: numbers(),
-            largest,
+            touch,
+            sum: vec![0.0; count],
         }
     }
 
     #[inline(always)]
-    fn touch<S: Simd, N: Number<W>, const W: usize>(
+    fn look<S: Simd, N: Number<W>, const W: usize>(
         &mut self,
         simd: S,
-        place: &Place<'_, N, W>,
+        place: &SweepPlace<'_, N, W>,
         part: Range<usize>,
+        open: &mut [u64],
     ) {
         let sides = Sides::new(place, part.start, part.len());
         for i in part.clone() {
             let touch = sides.touch(simd, i - part.start);
+            note_open::<S, N, W>(simd, open.get_mut(i), &touch);
             let at = i * W - self.first..(i + 1) * W - self.first;
             let keep = |values: &mut [f64], now: N::Wide<S>| {
                 for (value, &now) in values[at.clone()].iter_mut().zip(now.as_slice()) {
                     *value = now.into();
                 }
             };
-            keep(&mut self.overlap, touch.overlap);
-            keep(&mut self.root, touch.root);
-            keep(&mut self.rate, touch.rate);
-            keep(&mut self.across, touch.across);
+            keep(&mut self.touch.overlap, touch.overlap);
+            keep(&mut self.touch.root, touch.root);
+            keep(&mut self.touch.rate, touch.rate);
+            keep(&mut self.touch.across, touch.across);
             for at in at.clone() {
-                self.largest[at] = self.largest[at].max(self.overlap[at]);
-            }
-        }
-    }
-
-    /// Forces of some contacts, of which `row` is the first's among the section's.
-    fn sum(&mut self, set: InstructionSet, here: Range<usize>, row: usize) {
-        let sum = &mut self.sum[here.clone()];
-        sum.fill(0.0);
-        for (terms, rate) in [(&self.gated, &self.rate), (&self.ungated, &self.across)] {
-            let seen = Contacts {
-                overlap: &self.overlap[here.clone()],
-                root: &self.root[here.clone()],
-                rate: &rate[here.clone()],
-                largest: &self.largest[here.clone()],
-            };
-            for term in terms {
-                term.law.add_forces(set, &term.columns, row, seen, sum);
+                self.touch.largest[at] = self.touch.largest[at].max(self.touch.overlap[at]);
             }
         }
     }
 }
 
 impl<N: Number<W>, const W: usize> Sweep<N, W> for Unfused {
-    fn add(&mut self, set: InstructionSet, place: &Place<'_, N, W>, force: &mut [N]) {
+    fn add(
+        &mut self,
+        set: InstructionSet,
+        place: &SweepPlace<'_, N, W>,
+        force: &mut [N],
+        open: &mut [u64],
+    ) {
         let part = place.chunks(&self.contacts);
         if part.is_empty() {
             return;
         }
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
-            || self.touch(simd, place, part.clone())
+            || self.look(simd, place, part.clone(), open)
         ));
         // The section's own contacts among those of its chunks.
         let flat = (self.contacts.start * place.lanes).max(part.start * W)
             ..(part.end * W).min(self.contacts.end * place.lanes);
         let here = flat.start - self.first..flat.end - self.first;
         let row = flat.start - self.contacts.start * place.lanes;
-        self.sum(set, here.clone(), row);
+        let sum = &mut self.sum[here.clone()];
+        sum.fill(0.0);
+        self.touch.add_forces(set, [&self.gated, &self.ungated], (here.clone(), row), sum);
         for (force, &sum) in force[flat].iter_mut().zip(&self.sum[here]) {
             let before = if place.fresh { 0.0 } else { (*force).into() };
             *force = N::of(before + if self.clipped { sum.max(0.0) } else { sum });

@@ -1,12 +1,14 @@
 //! Overlaps, their roots and their rates, chunk by chunk.
 
-use super::column::Reader;
+use super::column::ColumnReader;
 use super::number::Number;
-use super::section::Place;
+use super::section::SweepPlace;
 use fearless_simd::prelude::*;
 
 /// One chunk of contacts as laws see them.
 pub(super) struct LaneTouch<V> {
+    /// Overlap, negative across a gap.
+    pub depth: V,
     pub overlap: V,
     pub root: V,
     /// Overlap rate; 0 where open, so that gated laws give no force there.
@@ -17,7 +19,7 @@ pub(super) struct LaneTouch<V> {
 
 /// Positions and velocities of the bodies left and right of some contacts.
 pub(super) struct Sides<'a, N, const W: usize> {
-    offset_m: Reader<'a, N, W>,
+    offset_m: ColumnReader<'a, N, W>,
     first: usize,
     /// Overlaps of this size and less are none.
     slightest_m: [N; W],
@@ -29,7 +31,7 @@ pub(super) struct Sides<'a, N, const W: usize> {
 impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
     /// Of `count` chunks of contacts from `first` on.
     #[inline(always)]
-    pub(super) fn new(place: &Place<'a, N, W>, first: usize, count: usize) -> Self {
+    pub(super) fn new(place: &SweepPlace<'a, N, W>, first: usize, count: usize) -> Self {
         let part = |values: &'a [N], from: usize| -> &'a [[N; W]] {
             &values[from..].as_chunks().0[..count]
         };
@@ -84,10 +86,24 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
             false => deep,
         };
         LaneTouch {
+            depth,
             overlap,
             root: N::roots(simd, overlap, deep.to_bitmask()),
             rate: closed.select(across, zero),
             across,
         }
+    }
+}
+
+/// Notes which contacts of a chunk are open, where anybody follows that.
+#[inline(always)]
+pub(super) fn note_open<S: Simd, N: Number<W>, const W: usize>(
+    simd: S,
+    open: Option<&mut u64>,
+    touch: &LaneTouch<N::Wide<S>>,
+) {
+    if let Some(open) = open {
+        let zero = N::Wide::<S>::simd_from(simd, N::default());
+        *open = touch.depth.simd_lt(zero).to_bitmask();
     }
 }

@@ -4,7 +4,7 @@
 //! stay open until the next look give no force, and bodies between such
 //! contacts fly on. Leaving out what they would add changes no bit.
 
-use super::column::{Reader, chunks};
+use super::column::{ColumnReader, chunks};
 use super::number::Number;
 use crate::instruction_set::InstructionSet;
 use crate::system::System;
@@ -17,7 +17,7 @@ const ROUNDINGS: f64 = 32.0;
 /// Positions, velocities and how contacts hang on them.
 #[derive(Clone, Copy)]
 pub(super) struct Places<'a, N, const W: usize> {
-    pub offset_m: Reader<'a, N, W>,
+    pub offset_m: ColumnReader<'a, N, W>,
     pub x: &'a [N],
     pub v: &'a [N],
     pub lanes: usize,
@@ -48,7 +48,7 @@ impl<N: Number<W>, const W: usize> Places<'_, N, W> {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Window {
+pub(super) struct LaneWindow {
     /// Chunks from the striker on that the wave has reached in any lane.
     pub chunks: usize,
     /// Chunks of contacts whose force must be computed.
@@ -61,7 +61,7 @@ pub(super) struct Window {
     may_sleep: bool,
 }
 
-impl Window {
+impl LaneWindow {
     /// Of chains whose first `moving` bodies can move, from where those are.
     pub(super) fn new<N: Number<W>, const W: usize>(
         (lanes, systems): (usize, &[&System]),

@@ -1,4 +1,4 @@
-use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Split, Term, Wide};
+use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
 use crate::material::Pair;
 
 /// Cubic in the overlap rate [Labbe2017]: F = B δ̇³ while in contact.
@@ -35,12 +35,5 @@ impl Term<1> for DampingCubic {
 
     fn force(k: &[f64; 1], contact: Closed) -> f64 {
         k[0] * contact.rate * contact.rate * contact.rate
-    }
-}
-
-impl Wide<1> for DampingCubic {
-    #[inline(always)]
-    fn add_to<N: Arithmetic>(sum: Split<N>, [coefficient]: [N; 1], contact: Closed<N>) -> Split<N> {
-        sum.add_plain(coefficient * contact.rate, contact.rate * contact.rate)
     }
 }

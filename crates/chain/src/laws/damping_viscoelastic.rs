@@ -1,4 +1,4 @@
-use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Split, Term, Wide};
+use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
 use crate::material::{Material, Pair};
 
 /// Viscoelastic spheres [Goldobin2015]: F = (3/2) A K √δ δ̇.
@@ -49,12 +49,5 @@ impl Term<1> for DampingViscoelastic {
 
     fn force(k: &[f64; 1], contact: Closed) -> f64 {
         k[0] * contact.root * contact.rate
-    }
-}
-
-impl Wide<1> for DampingViscoelastic {
-    #[inline(always)]
-    fn add_to<N: Arithmetic>(sum: Split<N>, [damping]: [N; 1], contact: Closed<N>) -> Split<N> {
-        sum.add_rooted(damping, contact.rate)
     }
 }

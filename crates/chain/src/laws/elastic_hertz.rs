@@ -1,4 +1,4 @@
-use super::{Arithmetic, Closed, LawError, LawInfo, Nature, Parameter, Source, Split, Term, Wide};
+use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
 use crate::material::Pair;
 
 /// Elastic spheres [Hertz1881]: F = K δ^{3/2}, K in N/m^{3/2}.
@@ -40,12 +40,5 @@ impl Term<1> for ElasticHertz {
 
     fn energy(&[stiffness]: &[f64; 1], overlap: f64, _largest: f64) -> f64 {
         0.4 * stiffness * overlap * overlap * overlap.sqrt()
-    }
-}
-
-impl Wide<1> for ElasticHertz {
-    #[inline(always)]
-    fn add_to<N: Arithmetic>(sum: Split<N>, [stiffness]: [N; 1], contact: Closed<N>) -> Split<N> {
-        sum.add_rooted(stiffness, contact.overlap)
     }
 }

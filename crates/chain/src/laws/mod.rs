@@ -30,8 +30,8 @@ pub use elastic_hertz::ElasticHertz;
 pub use elastic_plastic_thornton::ElasticPlasticThornton;
 pub use elastic_power::ElasticPower;
 pub use term::{
-    Arithmetic, Closed, Columns, Contacts, Law, LawError, LawInfo, Nature, Parameter, Row, Source,
-    Split, Term, Wide, law, row,
+    Closed, Columns, Contacts, Law, LawError, LawInfo, Nature, Parameter, Row, Source, Term, law,
+    row,
 };
 
 /// Every contact law, in the order in which the tools list them.

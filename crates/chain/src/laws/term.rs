@@ -5,21 +5,19 @@ use crate::instruction_set::InstructionSet;
 use crate::material::Pair;
 use fearless_simd::{dispatch, prelude::*};
 use std::fmt::Debug;
-use std::ops::{Add, Mul};
 use std::sync::Arc;
 
-/// One closed contact, as a law sees it; or, as [`Wide`] laws see them, as
-/// many as a vector register holds.
+/// One closed contact, as a law sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Closed<N = f64> {
+pub struct Closed {
     /// Overlap δ ≥ 0 in m.
-    pub overlap: N,
+    pub overlap: f64,
     /// √δ, given by the loop so that laws need no square root of their own.
-    pub root: N,
+    pub root: f64,
     /// Overlap rate δ̇ in m/s, positive while approaching.
-    pub rate: N,
+    pub rate: f64,
     /// Largest overlap so far, in m; never below `overlap`.
-    pub largest: N,
+    pub largest: f64,
 }
 
 impl Closed {
@@ -129,44 +127,6 @@ pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
     fn energy(_k: &[f64; C], _overlap: f64, _largest: f64) -> f64 {
         0.0
     }
-}
-
-/// What products and sums can be made of: a register of numbers.
-pub trait Arithmetic: Copy + Add<Output = Self> + Mul<Output = Self> {
-    /// `self` · `factor` + `rest`, rounded once where the machine can.
-    fn times_plus(self, factor: Self, rest: Self) -> Self;
-}
-
-/// A force that is summed law by law: √δ · `rooted` + `plain`. Products are
-/// added without being formed first, and √δ multiplies once for all laws.
-#[derive(Clone, Copy, Debug)]
-pub struct Split<N> {
-    /// What √δ multiplies.
-    pub rooted: N,
-    /// The rest.
-    pub plain: N,
-}
-
-impl<N: Arithmetic> Split<N> {
-    /// With `one` · `other` · √δ more.
-    #[inline(always)]
-    pub(crate) fn add_rooted(self, one: N, other: N) -> Self {
-        Self { rooted: one.times_plus(other, self.rooted), ..self }
-    }
-
-    /// With `one` · `other` more.
-    #[inline(always)]
-    pub(crate) fn add_plain(self, one: N, other: N) -> Self {
-        Self { plain: one.times_plus(other, self.plain), ..self }
-    }
-}
-
-/// A law whose force is sums and products alone, said once more for whole
-/// registers in either precision. Nothing needs it but the fastest path of the
-/// ensemble loop.
-pub trait Wide<const C: usize>: Term<C> {
-    /// Adds the force in N, positive when it pushes the bodies apart.
-    fn add_to<N: Arithmetic>(sum: Split<N>, k: [N; C], contact: Closed<N>) -> Split<N>;
 }
 
 /// Coefficients of one law over consecutive contacts: column `j` holds

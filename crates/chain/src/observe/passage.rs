@@ -180,16 +180,7 @@ impl Passages {
 
     /// From the signals of a sensor bead and of the wall, followed until a time in s.
     pub fn from_signals(sensor: Signal, wall: Signal, until_s: f64) -> Self {
-        let mut passages = Self {
-            sensor,
-            wall,
-            ends_shot: true,
-            until_s,
-            seen: (Seen::default(), Seen::default()),
-            incoming: None,
-            best: None,
-            over: false,
-        };
+        let mut passages = Self { sensor, wall, until_s, ..Self::new(0, 0, true) };
         passages.update();
         passages
     }

@@ -3,39 +3,12 @@
 use super::{SlowPhase, State};
 use crate::chain::Tension;
 use crate::instruction_set::InstructionSet;
-use crate::laws::Contacts;
-use crate::system::{FLUSH, System};
+use crate::system::{FLUSH, System, TouchColumns};
 use fearless_simd::{dispatch, prelude::*};
-
-/// What laws are to see of all contacts.
-#[derive(Clone, Debug)]
-pub(super) struct Touch {
-    pub overlap: Vec<f64>,
-    pub root: Vec<f64>,
-    /// Overlap rate; 0 where open, so that gated laws give no force there.
-    pub rate: Vec<f64>,
-    /// Overlap rate whether open or not.
-    pub across: Vec<f64>,
-    /// Largest overlap so far.
-    pub largest: Vec<f64>,
-}
-
-impl Touch {
-    pub(super) fn new(contacts: usize) -> Self {
-        let column = || vec![0.0; contacts];
-        Self {
-            overlap: column(),
-            root: column(),
-            rate: column(),
-            across: column(),
-            largest: column(),
-        }
-    }
-}
 
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
-    pub touch: Touch,
+    pub touch: TouchColumns,
     /// Rest overlap of every contact in m, −∞ where no contact is.
     pub offset: Vec<f64>,
     /// Total force of contact c at c + 1; 0 at both ends.
@@ -60,7 +33,7 @@ impl Columns {
         let friction = slow.friction_coefficient * system.normal_m_s2.abs();
         let rubs = system.inverse_mass.iter().map(|&w| if w > 0.0 { friction } else { 0.0 });
         let balance = balance(system);
-        let mut touch = Touch::new(system.contacts());
+        let mut touch = TouchColumns::new(system.contacts());
         for (contact, largest) in touch.largest.iter_mut().enumerate() {
             *largest = state.overlap_m(system, contact).max(0.0);
         }
@@ -149,7 +122,7 @@ impl Columns {
     }
 
     /// Forces of all laws on contacts as `touch` has them.
-    pub(super) fn laws(&self, system: &System, touch: &Touch, force: &mut [f64]) {
+    pub(super) fn laws(&self, system: &System, touch: &TouchColumns, force: &mut [f64]) {
         add_laws(system, self.set, touch, force);
     }
 }
@@ -165,28 +138,18 @@ fn balance(system: &System) -> Vec<f64> {
     (0..system.bodies()).map(|body| -rest(body)).collect()
 }
 
-fn remember(touch: &mut Touch) {
+fn remember(touch: &mut TouchColumns) {
     for (largest, &overlap) in touch.largest.iter_mut().zip(&touch.overlap) {
         *largest = largest.max(overlap);
     }
 }
 
-fn add_laws(system: &System, set: InstructionSet, touch: &Touch, force: &mut [f64]) {
+fn add_laws(system: &System, set: InstructionSet, touch: &TouchColumns, force: &mut [f64]) {
     force.fill(0.0);
     for section in system.sections.iter() {
         let part = section.contacts.clone();
-        let force = &mut force[part.clone()];
-        for (terms, rate) in [(&section.gated, &touch.rate), (&section.ungated, &touch.across)] {
-            let seen = Contacts {
-                overlap: &touch.overlap[part.clone()],
-                root: &touch.root[part.clone()],
-                rate: &rate[part.clone()],
-                largest: &touch.largest[part.clone()],
-            };
-            for term in terms {
-                term.law.add_forces(set, &term.columns, 0, seen, force);
-            }
-        }
+        let terms = [&section.gated[..], &section.ungated[..]];
+        touch.add_forces(set, terms, (part.clone(), 0), &mut force[part]);
     }
     if system.tension == Tension::Clipped {
         for force in force {
@@ -197,7 +160,7 @@ fn add_laws(system: &System, set: InstructionSet, touch: &Touch, force: &mut [f6
 
 /// Overlaps, their roots and rates. Closed ⇔ δ > 0, or δ = 0 and approaching.
 #[inline(always)]
-fn meet(touch: &mut Touch, offset: &[f64], x: &[f64], v: &[f64]) {
+fn meet(touch: &mut TouchColumns, offset: &[f64], x: &[f64], v: &[f64]) {
     let n = offset.len();
     let (left, right) = (&x[..n], &x[1..=n]);
     let (before, after) = (&v[..n], &v[1..=n]);

@@ -1,7 +1,7 @@
 //! How long the next steps are.
 
-use super::columns::{Columns, Touch};
-use crate::system::{FLUSH, System};
+use super::columns::Columns;
+use crate::system::{FLUSH, System, TouchColumns};
 use fearless_simd::{dispatch, prelude::*};
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -29,7 +29,7 @@ pub(super) struct Pace {
     /// Squared rate in rad²/s² that springs and threads add.
     held_per_s2: f64,
     /// Contacts as they may be before the next look.
-    ahead: Touch,
+    ahead: TouchColumns,
     /// Forces with damping, without it, and at a slightly smaller overlap.
     damped: Vec<f64>,
     stiff: Vec<f64>,
@@ -44,7 +44,7 @@ impl Pace {
             fraction,
             longest_s,
             held_per_s2: system.pendulum_per_s2 + spring * system.inverse_mass[1],
-            ahead: Touch::new(system.contacts()),
+            ahead: TouchColumns::new(system.contacts()),
             damped: contacts(),
             stiff: contacts(),
             soft: contacts(),
@@ -110,7 +110,7 @@ impl Pace {
 
 /// Overlaps when contacts go on closing for a time.
 #[inline(always)]
-fn close(ahead: &mut Touch, columns: &Columns, x: &[f64], time_s: f64) {
+fn close(ahead: &mut TouchColumns, columns: &Columns, x: &[f64], time_s: f64) {
     let n = columns.offset.len();
     let (offset, left, right) = (&columns.offset[..n], &x[..n], &x[1..=n]);
     let (now, before) = (&columns.touch.across[..n], &columns.touch.largest[..n]);
@@ -128,7 +128,7 @@ fn close(ahead: &mut Touch, columns: &Columns, x: &[f64], time_s: f64) {
 }
 
 #[inline(always)]
-fn soften(ahead: &mut Touch) {
+fn soften(ahead: &mut TouchColumns) {
     for (overlap, root) in ahead.overlap.iter_mut().zip(&mut ahead.root) {
         *overlap *= 1.0 - SOFTER;
         *root = overlap.sqrt();
@@ -138,7 +138,7 @@ fn soften(ahead: &mut Touch) {
 /// Rates as they are now and faster by what a step adds: damping that acts on
 /// them may outgrow the contacts' stiffness within it.
 #[inline(always)]
-fn hasten(ahead: &mut Touch, columns: &Columns, stiff: &[f64], step_s: f64) {
+fn hasten(ahead: &mut TouchColumns, columns: &Columns, stiff: &[f64], step_s: f64) {
     let n = stiff.len();
     let (left, right) = (&columns.inverse_mass[..n], &columns.inverse_mass[1..=n]);
     let (now, overlap) = (&columns.touch.across[..n], &ahead.overlap[..n]);

@@ -3,25 +3,28 @@
 use crate::chain::{Bead, Chain, ChainError, FarEnd, Push, Start};
 use crate::material::Material;
 
-pub(super) fn positive(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
-    match value.is_finite() && value > 0.0 {
+fn must(
+    holds: bool,
+    what: impl Fn() -> String,
+    value: f64,
+    expected: &'static str,
+) -> Result<(), ChainError> {
+    match holds {
         true => Ok(()),
-        false => Err(ChainError::Value { what: what(), value, expected: "positive and finite" }),
+        false => Err(ChainError::Value { what: what(), value, expected }),
     }
+}
+
+pub(crate) fn positive(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
+    must(value.is_finite() && value > 0.0, what, value, "positive and finite")
 }
 
 fn finite(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
-    match value.is_finite() {
-        true => Ok(()),
-        false => Err(ChainError::Value { what: what(), value, expected: "finite" }),
-    }
+    must(value.is_finite(), what, value, "finite")
 }
 
 fn at_least_zero(what: impl Fn() -> String, value: f64) -> Result<(), ChainError> {
-    match value.is_finite() && value >= 0.0 {
-        true => Ok(()),
-        false => Err(ChainError::Value { what: what(), value, expected: "0 or more, and finite" }),
-    }
+    must(value.is_finite() && value >= 0.0, what, value, "0 or more, and finite")
 }
 
 fn check_bead(bead: &Bead, name: impl Fn() -> String) -> Result<(), ChainError> {
@@ -32,16 +35,10 @@ fn check_bead(bead: &Bead, name: impl Fn() -> String) -> Result<(), ChainError> 
 
 /// A rigid material has an infinite Young modulus.
 fn check_material(material: &Material, name: impl Fn() -> String) -> Result<(), ChainError> {
-    let refuse = |what: &str, value: f64, expected: &'static str| {
-        Err(ChainError::Value { what: format!("{what} of {}", name()), value, expected })
-    };
     let (modulus, ratio) = (material.young_modulus_pa, material.poisson_ratio);
-    if modulus.is_nan() || modulus <= 0.0 {
-        return refuse("Young modulus in Pa", modulus, "positive");
-    }
-    if !(ratio > -1.0 && ratio < 1.0) {
-        return refuse("Poisson ratio", ratio, "between -1 and 1");
-    }
+    must(modulus > 0.0, || format!("Young modulus in Pa of {}", name()), modulus, "positive")?;
+    let sound = ratio > -1.0 && ratio < 1.0;
+    must(sound, || format!("Poisson ratio of {}", name()), ratio, "between -1 and 1")?;
     at_least_zero(|| format!("shear viscosity of {}", name()), material.shear_viscosity_pa_s)?;
     at_least_zero(|| format!("bulk viscosity of {}", name()), material.bulk_viscosity_pa_s)
 }

@@ -1,7 +1,51 @@
-//! One contact alone, as sensors, events and budgets need it.
+//! Forces of contacts: of one alone, as sensors, events and budgets need it, and of many as columns.
 
-use super::{SectionColumns, System};
-use crate::laws::Closed;
+use super::{SectionColumns, System, TermColumns};
+use crate::instruction_set::InstructionSet;
+use crate::laws::{Closed, Contacts};
+use std::ops::Range;
+
+/// What laws see of consecutive contacts.
+#[derive(Clone, Debug)]
+pub(crate) struct TouchColumns {
+    pub overlap: Vec<f64>,
+    pub root: Vec<f64>,
+    /// Overlap rate; 0 where open, so that gated laws give no force there.
+    pub rate: Vec<f64>,
+    /// Overlap rate whether open or not.
+    pub across: Vec<f64>,
+    /// Largest overlap so far.
+    pub largest: Vec<f64>,
+}
+
+impl TouchColumns {
+    pub(crate) fn new(contacts: usize) -> Self {
+        let [overlap, root, rate, across, largest] = std::array::from_fn(|_| vec![0.0; contacts]);
+        Self { overlap, root, rate, across, largest }
+    }
+
+    /// Adds the forces of gated and ungated terms on some contacts, the first of which is
+    /// row `first` of the terms' columns.
+    pub(crate) fn add_forces(
+        &self,
+        set: InstructionSet,
+        terms: [&[TermColumns]; 2],
+        (here, first): (Range<usize>, usize),
+        force: &mut [f64],
+    ) {
+        for (terms, rate) in terms.into_iter().zip([&self.rate, &self.across]) {
+            let seen = Contacts {
+                overlap: &self.overlap[here.clone()],
+                root: &self.root[here.clone()],
+                rate: &rate[here.clone()],
+                largest: &self.largest[here.clone()],
+            };
+            for term in terms {
+                term.law.add_forces(set, &term.columns, first, seen, force);
+            }
+        }
+    }
+}
 
 impl System {
     pub(crate) fn section(&self, contact: usize) -> Option<&SectionColumns> {
@@ -10,20 +54,20 @@ impl System {
 
     /// Sum of all terms of a closed contact in N, before any cut.
     pub(crate) fn unclipped_force(&self, contact: usize, closed: Closed) -> f64 {
-        let Some(section) = self.section(contact) else {
-            return 0.0;
-        };
-        let at = contact - section.contacts.start;
-        section.terms().map(|term| term.law.force(&term.columns, at, closed)).sum()
+        let force = |term: &TermColumns, at| term.law.force(&term.columns, at, closed);
+        self.section(contact).map_or(0.0, |section| {
+            let at = contact - section.contacts.start;
+            section.terms().map(|term| force(term, at)).sum()
+        })
     }
 
     /// Sum of the terms that act across a gap, in N.
     pub(crate) fn ungated_force(&self, contact: usize, closed: Closed) -> f64 {
-        let Some(section) = self.section(contact) else {
-            return 0.0;
-        };
-        let at = contact - section.contacts.start;
-        section.ungated.iter().map(|term| term.law.force(&term.columns, at, closed)).sum()
+        let force = |term: &TermColumns, at| term.law.force(&term.columns, at, closed);
+        self.section(contact).map_or(0.0, |section| {
+            let at = contact - section.contacts.start;
+            section.ungated.iter().map(|term| force(term, at)).sum()
+        })
     }
 
     /// Energy in J that all terms of a contact hold at an overlap never exceeded before.

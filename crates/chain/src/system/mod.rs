@@ -8,6 +8,7 @@ mod resume;
 mod scales;
 mod statics;
 
+pub(crate) use contact::TouchColumns;
 pub use statics::StaticContact;
 
 use crate::chain::{Chain, ChainError, Tension};

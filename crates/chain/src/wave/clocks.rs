@@ -4,7 +4,7 @@ use super::Control;
 use super::forces::Gates;
 use super::run::Wave;
 use super::step::worse_than;
-use super::zones::Slow;
+use super::zones::LongStep;
 use std::ops::Range;
 
 impl Wave<'_> {
@@ -74,7 +74,7 @@ impl Wave<'_> {
                 self.slow.begin((self.state.time_s, step_s), window);
                 return true;
             }
-            match Slow::around(needy, &window, reaches) {
+            match LongStep::around(needy, &window, reaches) {
                 Some(quick) => self.slow.quick = quick,
                 None if self.slow.shorten() => {}
                 None => break,

@@ -2,13 +2,15 @@
 
 use super::energy::Budget;
 use super::meter::Meter;
-use super::state::{Mode, State};
+use super::state::{ContactMode, WaveState};
+use super::step::MOST_STAGES;
 use super::table::{DEGREE, Table};
-use super::zones::Slow;
+use super::zones::LongStep;
 use crate::chain::Tension;
 use crate::laws::Closed;
 use crate::sensor::Sensor;
 use crate::system::{FLUSH, System};
+use std::cell::Cell;
 use std::ops::Range;
 
 /// One step of a shot. `θ` runs from 0 to 1 within it; forces are those of
@@ -18,7 +20,7 @@ use std::ops::Range;
 pub struct Piece<'a> {
     pub(super) system: &'a System,
     pub(super) table: &'a Table,
-    pub(super) state: &'a State,
+    pub(super) state: &'a WaveState,
     pub(super) step_s: f64,
     /// Positions and velocities at the end of the step.
     pub(super) end: (&'a [f64], &'a [f64]),
@@ -30,9 +32,14 @@ pub struct Piece<'a> {
     /// Tolerance of a step, 0 where steps are fixed.
     pub(super) tolerance: f64,
     /// The long step of slow bodies, if one is under way.
-    pub(super) slow: Option<&'a Slow>,
+    pub(super) slow: Option<&'a LongStep>,
     pub(super) meter: Option<&'a Meter>,
+    /// The `θ` that was asked for last, and each stage's weights there.
+    pub(super) weights: Cell<(f64, StageWeights)>,
 }
+
+/// Weights of the stages' accelerations for velocity and position.
+pub(super) type StageWeights = [[f64; 2]; MOST_STAGES];
 
 /// A contact touches or parts within this share of a step if its overlap is less than
 /// this share of what its rate makes in a step.
@@ -86,7 +93,7 @@ impl Piece<'_> {
     pub fn is_open(&self, contact: usize) -> bool {
         match self.is_slow(contact) {
             true => self.overlap(contact, 0.0).0 < 0.0,
-            false => self.state.mode[contact] == Mode::Open,
+            false => self.state.mode[contact] == ContactMode::Open,
         }
     }
 
@@ -148,11 +155,23 @@ impl Piece<'_> {
         let (x, v) = (self.state.x[body], self.state.v[body]);
         let h = self.step_s;
         let (mut moved, mut sped) = (0.0, 0.0);
-        for (j, a) in self.accelerations.iter().enumerate() {
-            sped += polynomial(&self.table.dense_velocity[j], theta) * a[body];
-            moved += polynomial(&self.table.dense_position[j], theta) * a[body];
+        for (a, [faster, further]) in self.accelerations.iter().zip(self.weights_at(theta)) {
+            sped += faster * a[body];
+            moved += further * a[body];
         }
         (x + h * theta * v + h * h * moved, v + h * sped)
+    }
+
+    fn weights_at(&self, theta: f64) -> StageWeights {
+        let (at, mut weights) = self.weights.get();
+        if at != theta {
+            let rows = self.table.dense_velocity.iter().zip(&self.table.dense_position);
+            for (weights, (velocity, position)) in weights.iter_mut().zip(rows) {
+                *weights = [polynomial(velocity, theta), polynomial(position, theta)];
+            }
+            self.weights.set((theta, weights));
+        }
+        weights
     }
 
     /// Overlap in m (negative across a gap) and overlap rate in m/s of a contact.
@@ -185,15 +204,15 @@ impl Piece<'_> {
         let frozen = self.frozen && !self.is_slow(contact);
         let mode = match frozen {
             true => self.state.mode[contact],
-            false if overlap > FLUSH || (overlap >= 0.0 && rate > 0.0) => Mode::Closed,
-            false => Mode::Open,
+            false if overlap > FLUSH || (overlap >= 0.0 && rate > 0.0) => ContactMode::Closed,
+            false => ContactMode::Open,
         };
         let force = match mode {
-            Mode::Closed => self.system.unclipped_force(contact, closed),
-            Mode::Open => self.system.ungated_force(contact, closed),
-            Mode::Cut => 0.0,
+            ContactMode::Closed => self.system.unclipped_force(contact, closed),
+            ContactMode::Open => self.system.ungated_force(contact, closed),
+            ContactMode::Cut => 0.0,
         };
-        let smooth = frozen && mode == Mode::Closed;
+        let smooth = frozen && mode == ContactMode::Closed;
         match self.system.tension {
             Tension::Clipped if !smooth => force.max(0.0),
             _ => force,

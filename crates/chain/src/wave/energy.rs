@@ -1,6 +1,6 @@
 //! Where the energy of a shot is.
 
-use super::state::{Mode, State};
+use super::state::{ContactMode, WaveState};
 use crate::laws::Nature;
 use crate::system::System;
 
@@ -66,7 +66,7 @@ impl Budget {
 }
 
 /// Energy that contacts hold, of one law or of all.
-pub(super) fn stored(system: &System, state: &State, law: Option<&str>) -> f64 {
+pub(super) fn stored(system: &System, state: &WaveState, law: Option<&str>) -> f64 {
     let mut sum = 0.0;
     for section in system.sections.iter() {
         for term in section.terms() {
@@ -76,7 +76,7 @@ pub(super) fn stored(system: &System, state: &State, law: Option<&str>) -> f64 {
             }
             for c in section.contacts.clone() {
                 let overlap = state.overlap(system, c);
-                if overlap > 0.0 && state.mode[c] != Mode::Open {
+                if overlap > 0.0 && state.mode[c] != ContactMode::Open {
                     let largest = state.largest[c].max(overlap);
                     sum += term.law.energy(
                         &term.columns,
@@ -98,20 +98,20 @@ pub(super) fn rest_energy(system: &System) -> f64 {
         .sum()
 }
 
-pub(super) fn kinetic(system: &System, state: &State) -> f64 {
+pub(super) fn kinetic(system: &System, state: &WaveState) -> f64 {
     let beads = system.bodies() - 1;
     let moving = system.mass_kg[..beads].iter().zip(&state.v);
     moving.filter(|(mass, _)| mass.is_finite()).map(|(mass, v)| 0.5 * mass * v * v).sum()
 }
 
-pub(super) fn gravity(system: &System, state: &State) -> f64 {
+pub(super) fn gravity(system: &System, state: &WaveState) -> f64 {
     let beads = system.bodies() - 1;
     let first = usize::from(!system.has_striker);
     let bodies = system.mass_kg[..beads].iter().zip(&state.x).skip(first);
     bodies.map(|(mass, x)| mass * x * (0.5 * system.pendulum_per_s2 * x - system.slope_m_s2)).sum()
 }
 
-pub(super) fn preload(system: &System, state: &State) -> f64 {
+pub(super) fn preload(system: &System, state: &WaveState) -> f64 {
     let x = state.x[1];
     match system.spring {
         None => -system.push_n * x,
@@ -122,7 +122,7 @@ pub(super) fn preload(system: &System, state: &State) -> f64 {
     }
 }
 
-pub(super) fn stop(system: &System, state: &State) -> f64 {
+pub(super) fn stop(system: &System, state: &WaveState) -> f64 {
     let Some(mass) = system.stop_mass_kg else {
         return 0.0;
     };

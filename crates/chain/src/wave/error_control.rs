@@ -3,7 +3,7 @@
 use super::Control;
 use super::outcome::SolveError;
 use super::run::Wave;
-use super::step::error_norm;
+use super::step::{LANES, error_norm};
 
 /// Steps below this fraction of the contact time mean that accuracy is out of
 /// reach: at the first touch of a contact and the least tolerance 1e-9 is enough.
@@ -70,7 +70,8 @@ impl Wave<'_> {
         let speed = self.speed_scale();
         let length = speed * self.system.scales().time_s;
         let bodies = self.owned();
-        let (error, body) = error_norm(bodies, h, weights, &self.a, (speed, length));
+        let (set, scales) = (self.pass.set, (speed, length));
+        let (error, body) = error_norm(set, bodies, h, weights, &self.a, scales);
         let work = self.meter.as_ref().map_or(0.0, |meter| meter.error(h, &weights[0]));
         (if work > error { work } else { error }, body)
     }
@@ -79,9 +80,17 @@ impl Wave<'_> {
     pub(super) fn speed_scale(&self) -> f64 {
         let bodies = self.owned();
         let contacts = bodies.start..bodies.end - 1;
-        let v = &self.state.v[contacts.start..=contacts.end];
-        let touching = &self.state.touching[contacts];
-        let rates = v.windows(2).zip(touching).map(|(v, on)| on * (v[0] - v[1]).abs());
-        rates.fold(LEAST_SCALE * self.system.scales().speed_m_s, f64::max)
+        let (left, right) =
+            (&self.state.v[contacts.clone()], &self.state.v[contacts.start + 1..=contacts.end]);
+        let rows = left.chunks(LANES).zip(right.chunks(LANES));
+        let mut largest = [LEAST_SCALE * self.system.scales().speed_m_s; LANES];
+        for ((left, right), touching) in rows.zip(self.state.touching[contacts].chunks(LANES)) {
+            let rates = left.iter().zip(right).zip(touching);
+            for (largest, ((left, right), on)) in largest.iter_mut().zip(rates) {
+                let rate = on * (left - right).abs();
+                *largest = if rate > *largest { rate } else { *largest };
+            }
+        }
+        largest.into_iter().fold(0.0, f64::max)
     }
 }

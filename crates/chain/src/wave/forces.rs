@@ -1,11 +1,12 @@
 //! One force pass: from positions and velocities to accelerations.
 
-use super::state::State;
+use super::state::WaveState;
+use super::step::LANES;
 use crate::chain::Tension;
 use crate::instruction_set::InstructionSet;
 use crate::laws::Contacts;
 use crate::system::{FLUSH, System};
-
+use fearless_simd::{dispatch, f64x4, prelude::*};
 use std::ops::Range;
 
 /// Whether gates keep the mode they had when the step began.
@@ -32,7 +33,7 @@ pub(crate) struct Pass {
     pub across: Vec<f64>,
     /// Dynamic force of contact c at index c + 1; 0 at both ends.
     pub dynamic: Vec<f64>,
-    /// Gates of the last pass, as in [`State`].
+    /// Gates of the last pass, as in [`WaveState`].
     pub passing: Vec<f64>,
     pub touching: Vec<f64>,
     pub scratch: Vec<f64>,
@@ -63,28 +64,35 @@ impl Pass {
     pub(super) fn accelerate(
         &mut self,
         system: &System,
-        state: &State,
+        state: &WaveState,
         gates: Gates,
         bodies: Range<usize>,
         (x, v): (&[f64], &[f64]),
         a: &mut [f64],
     ) {
         let contacts = bodies.start..bodies.end - 1;
-        self.kinematics(system, contacts.clone(), x, v);
-        self.memory(system, state, contacts.clone());
-        match gates {
-            Gates::Frozen => {
-                self.passing[contacts.clone()].copy_from_slice(&state.passing[contacts.clone()]);
-                self.touching[contacts.clone()].copy_from_slice(&state.touching[contacts.clone()]);
+        dispatch!(self.set.level(), simd => simd.vectorize(
+            #[inline(always)]
+            || {
+                self.kinematics(simd, system, contacts.clone(), x, v);
+                self.memory(system, state, contacts.clone());
+                self.set_gates(state, gates, contacts.clone());
+                self.add_terms(system, contacts.clone());
+                self.subtract_static(system, contacts.clone(), gates);
+                self.push_bodies(system, bodies.clone(), x, a);
             }
-            Gates::Instant => self.look_at_gates(contacts.clone()),
-        }
-        self.add_terms(system, contacts.clone());
-        self.subtract_static(system, contacts, gates);
-        self.push_bodies(system, bodies, x, a);
+        ));
     }
 
-    fn kinematics(&mut self, system: &System, contacts: Range<usize>, x: &[f64], v: &[f64]) {
+    #[inline(always)]
+    fn kinematics<S: Simd>(
+        &mut self,
+        simd: S,
+        system: &System,
+        contacts: Range<usize>,
+        x: &[f64],
+        v: &[f64],
+    ) {
         let n = contacts.len();
         let (first, end) = (contacts.start, contacts.end);
         let offset = &system.offset_m[contacts.clone()];
@@ -94,12 +102,35 @@ impl Pass {
         let overlap = &mut self.overlap[contacts.clone()][..n];
         let root = &mut self.root[contacts.clone()][..n];
         let rate = &mut self.rate[contacts][..n];
-        for c in 0..n {
+        let whole = n - n % LANES;
+        for c in (0..whole).step_by(LANES) {
+            let here = c..c + LANES;
+            let load = |values: &[f64]| f64x4::from_slice(simd, &values[here.clone()]);
+            let depth = load(offset) - (load(right) - load(left));
+            let deep = depth.simd_gt(f64x4::splat(simd, FLUSH));
+            let overlapped = deep.select(depth, f64x4::splat(simd, 0.0));
+            depth.store_slice(&mut gap[here.clone()]);
+            overlapped.store_slice(&mut overlap[here.clone()]);
+            overlapped.sqrt().store_slice(&mut root[here.clone()]);
+            (load(before) - load(after)).store_slice(&mut rate[here.clone()]);
+        }
+        for c in whole..n {
             let depth = offset[c] - (right[c] - left[c]);
             gap[c] = depth;
             overlap[c] = if depth > FLUSH { depth } else { 0.0 };
             root[c] = overlap[c].sqrt();
             rate[c] = before[c] - after[c];
+        }
+    }
+
+    #[inline(always)]
+    fn set_gates(&mut self, state: &WaveState, gates: Gates, contacts: Range<usize>) {
+        match gates {
+            Gates::Frozen => {
+                self.passing[contacts.clone()].copy_from_slice(&state.passing[contacts.clone()]);
+                self.touching[contacts.clone()].copy_from_slice(&state.touching[contacts]);
+            }
+            Gates::Instant => self.look_at_gates(contacts),
         }
     }
 
@@ -117,7 +148,7 @@ impl Pass {
     }
 
     /// Largest overlaps, where a law asks for them.
-    fn memory(&mut self, system: &System, state: &State, contacts: Range<usize>) {
+    fn memory(&mut self, system: &System, state: &WaveState, contacts: Range<usize>) {
         if !system.has_memory {
             return;
         }
@@ -164,6 +195,7 @@ impl Pass {
     }
 
     /// Gates and cuts the sums, and takes the static force away.
+    #[inline(always)]
     fn subtract_static(&mut self, system: &System, contacts: Range<usize>, gates: Gates) {
         let n = contacts.len();
         let dynamic = &mut self.dynamic[contacts.start + 1..=contacts.end][..n];
@@ -194,6 +226,7 @@ impl Pass {
     }
 
     /// Newton's second law for the bodies of a window.
+    #[inline(always)]
     fn push_bodies(&mut self, system: &System, bodies: Range<usize>, x: &[f64], a: &mut [f64]) {
         self.dynamic[bodies.start] = 0.0;
         self.dynamic[bodies.end] = 0.0;

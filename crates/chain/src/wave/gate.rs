@@ -2,7 +2,7 @@
 
 use super::dense::Piece;
 use super::forces::Pass;
-use super::state::{Mode, State};
+use super::state::{ContactMode, WaveState};
 use crate::chain::Tension;
 use crate::laws::Closed;
 use crate::system::System;
@@ -12,9 +12,9 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Change {
     /// To another mode, as its overlap passes 0.
-    Overlap(Mode),
+    Overlap(ContactMode),
     /// To another mode, as its force passes 0.
-    Force(Mode),
+    Force(ContactMode),
     /// From loading to unloading, where a law remembers the largest overlap.
     Turn,
 }
@@ -31,7 +31,7 @@ pub(super) struct Event {
 
 /// Looks for changes of mode at the end of a step.
 #[derive(Clone, Debug)]
-pub(super) struct Watch {
+pub(super) struct GateWatch {
     tolerance: f64,
     time_s: f64,
     /// Velocity change in m/s that is within a step's error.
@@ -56,7 +56,7 @@ const LEAST_STEP: f64 = 1e-12;
 /// Overlaps are differences of positions that are this uncertain.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-impl Watch {
+impl GateWatch {
     pub(super) fn new(system: &System, tolerance: f64) -> Self {
         let scales = system.scales();
         Self {
@@ -78,15 +78,17 @@ impl Watch {
 
     /// The change a contact has made by the end of a step, estimated from the
     /// force pass there.
-    fn change(&self, system: &System, state: &State, pass: &Pass, c: usize) -> Option<Change> {
+    fn change(&self, system: &System, state: &WaveState, pass: &Pass, c: usize) -> Option<Change> {
         let gap = pass.gap[c];
         let clipped = system.tension == Tension::Clipped;
         match state.mode[c] {
-            Mode::Open => (gap > 0.0).then_some(Change::Overlap(Mode::Closed)),
-            _ if gap < 0.0 => Some(Change::Overlap(Mode::Open)),
-            Mode::Closed if clipped && pass.uncut(c) < 0.0 => Some(Change::Force(Mode::Cut)),
-            Mode::Cut if pass.uncut(c) > 0.0 => Some(Change::Force(Mode::Closed)),
-            Mode::Closed if system.has_memory => {
+            ContactMode::Open => (gap > 0.0).then_some(Change::Overlap(ContactMode::Closed)),
+            _ if gap < 0.0 => Some(Change::Overlap(ContactMode::Open)),
+            ContactMode::Closed if clipped && pass.uncut(c) < 0.0 => {
+                Some(Change::Force(ContactMode::Cut))
+            }
+            ContactMode::Cut if pass.uncut(c) > 0.0 => Some(Change::Force(ContactMode::Closed)),
+            ContactMode::Closed if system.has_memory => {
                 let loading = state.v[c] - state.v[c + 1] > 1e-9 * self.speed;
                 (loading && pass.rate[c] < -1e-9 * self.speed).then_some(Change::Turn)
             }
@@ -152,7 +154,7 @@ impl Watch {
     fn has_landed(
         &self,
         system: &System,
-        state: &State,
+        state: &WaveState,
         pass: &Pass,
         c: usize,
         change: Change,
@@ -167,7 +169,7 @@ impl Watch {
     pub(super) fn settle(
         &mut self,
         system: &System,
-        state: &mut State,
+        state: &mut WaveState,
         pass: &Pass,
         contacts: Range<usize>,
         aimed: Option<Event>,
@@ -193,13 +195,13 @@ impl Watch {
     }
 
     /// Makes a change that falls on the start of a step.
-    pub(super) fn apply(&mut self, state: &mut State, event: Event) {
+    pub(super) fn apply(&mut self, state: &mut WaveState, event: Event) {
         if let Change::Overlap(mode) | Change::Force(mode) = event.change {
             self.set(state, event.contact, mode);
         }
     }
 
-    fn set(&mut self, state: &mut State, contact: usize, mode: Mode) {
+    fn set(&mut self, state: &mut WaveState, contact: usize, mode: ContactMode) {
         let count = self.changed_at(contact, state.time_s) + 1;
         self.last[contact] = (state.time_s, count);
         state.set(contact, mode);
@@ -213,9 +215,9 @@ fn locate(piece: &Piece<'_>, contact: usize, change: Change) -> f64 {
     let signed = |theta: f64| {
         let (overlap, rate) = piece.overlap(contact, theta);
         match change {
-            Change::Overlap(Mode::Closed) => overlap,
+            Change::Overlap(ContactMode::Closed) => overlap,
             Change::Overlap(_) => -overlap,
-            Change::Force(Mode::Closed) => piece.closed_force(contact, overlap, rate),
+            Change::Force(ContactMode::Closed) => piece.closed_force(contact, overlap, rate),
             Change::Force(_) => -piece.closed_force(contact, overlap, rate),
             Change::Turn => -rate,
         }

@@ -2,7 +2,7 @@
 
 use super::energy::{Budget, Dissipated, gravity, kinetic, preload, rest_energy, stop, stored};
 use super::forces::Pass;
-use super::state::State;
+use super::state::WaveState;
 use crate::laws::Nature;
 use crate::system::{SectionColumns, System, TermColumns};
 use std::ops::Range;
@@ -11,6 +11,8 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub(crate) struct Meter {
     laws: Vec<&'static str>,
+    /// Which of them each term of each section is, if any.
+    slots: Vec<Vec<Option<usize>>>,
     /// Powers of the laws, then of the cut, then of the driven end; a row a stage.
     powers_w: Vec<Vec<f64>>,
     /// The same of the long step that slow bodies take.
@@ -24,12 +26,18 @@ pub(crate) struct Meter {
 }
 
 impl Meter {
-    pub(super) fn new(system: &System, state: &State, stages: usize) -> Self {
+    pub(super) fn new(system: &System, state: &WaveState, stages: usize) -> Self {
         let mut laws: Vec<&'static str> = lossy(system).map(|term| term.law.info().name).collect();
         laws.sort_unstable();
         laws.dedup();
         let slots = laws.len() + 2;
+        let slot = |term: &TermColumns| {
+            let name = term.law.info().name;
+            laws.iter().position(|&law| law == name)
+        };
+        let of_section = |section: &SectionColumns| section.terms().map(slot).collect();
         let mut meter = Self {
+            slots: system.sections.iter().map(of_section).collect(),
             laws,
             powers_w: vec![vec![0.0; slots]; stages],
             slow_powers_w: vec![vec![0.0; slots]; stages],
@@ -63,13 +71,13 @@ impl Meter {
         }
         for contacts in contacts.iter().filter(|contacts| !contacts.is_empty()) {
             powers[cut] += cut_power(system, pass, contacts.clone());
-            for section in system.sections.iter() {
+            for (section, slots) in system.sections.iter().zip(&self.slots) {
                 let part = section.contacts.start.max(contacts.start)
                     ..section.contacts.end.min(contacts.end);
-                for (term, gated) in with_gates(section).filter(|_| !part.is_empty()) {
-                    let name = term.law.info().name;
-                    if let Some(slot) = self.laws.iter().position(|&law| law == name) {
-                        powers[slot] += term_power(section, term, gated, pass, part.clone());
+                let terms = with_gates(section).zip(slots).filter(|_| !part.is_empty());
+                for ((term, gated), slot) in terms {
+                    if let Some(slot) = slot {
+                        powers[*slot] += term_power(section, term, gated, pass, part.clone());
                     }
                 }
             }
@@ -117,7 +125,7 @@ impl Meter {
     pub(super) fn budget(
         &self,
         system: &System,
-        state: &State,
+        state: &WaveState,
         pending: Option<&(f64, Vec<f64>)>,
     ) -> Budget {
         let mut work_j = self.work_j.clone();

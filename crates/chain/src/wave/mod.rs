@@ -45,68 +45,36 @@ pub enum Control {
 }
 
 /// A solver: a table of numbers and a way to choose steps.
-pub trait Method: std::fmt::Debug + Send + Sync {
+#[derive(Clone, Debug)]
+pub struct Method {
     /// The numbers.
-    fn table(&self) -> Table;
+    pub table: Table,
     /// The steps.
-    fn control(&self) -> Control;
+    pub control: Control,
     /// Name for people.
-    fn name(&self) -> &'static str;
+    pub name: &'static str,
 }
 
-/// The default: Dormand–Prince 5(4), adaptive, locating contact changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DormandPrince {
-    /// Largest accepted error per step.
-    pub tolerance: f64,
-}
+impl Method {
+    /// The default: Dormand–Prince 5(4), adaptive, locating contact changes, with a largest
+    /// accepted error per step.
+    pub fn dormand_prince(tolerance: f64) -> Self {
+        Self {
+            table: dormand_prince::dormand_prince(),
+            control: Control::Adaptive { tolerance },
+            name: "Dormand–Prince 5(4), adaptive, contact changes located",
+        }
+    }
 
-impl Method for DormandPrince {
-    fn table(&self) -> Table {
-        dormand_prince::dormand_prince()
+    /// The paper's classical Runge–Kutta method with a fixed step in s.
+    pub fn rk4(step_s: f64) -> Self {
+        let (table, control) = (rk4::rk4(), Control::Fixed { step_s });
+        Self { table, control, name: "classical Runge–Kutta 4, fixed step" }
     }
-    fn control(&self) -> Control {
-        Control::Adaptive { tolerance: self.tolerance }
-    }
-    fn name(&self) -> &'static str {
-        "Dormand–Prince 5(4), adaptive, contact changes located"
-    }
-}
 
-/// The paper's classical Runge–Kutta method with a fixed step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rk4 {
-    /// Step in s.
-    pub step_s: f64,
-}
-
-impl Method for Rk4 {
-    fn table(&self) -> Table {
-        rk4::rk4()
-    }
-    fn control(&self) -> Control {
-        Control::Fixed { step_s: self.step_s }
-    }
-    fn name(&self) -> &'static str {
-        "classical Runge–Kutta 4, fixed step"
-    }
-}
-
-/// Velocity Verlet with a fixed step, as discrete-element codes do.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Verlet {
-    /// Step in s.
-    pub step_s: f64,
-}
-
-impl Method for Verlet {
-    fn table(&self) -> Table {
-        verlet::verlet()
-    }
-    fn control(&self) -> Control {
-        Control::Fixed { step_s: self.step_s }
-    }
-    fn name(&self) -> &'static str {
-        "velocity Verlet, fixed step"
+    /// Velocity Verlet with a fixed step in s, as discrete-element codes do.
+    pub fn verlet(step_s: f64) -> Self {
+        let (table, control) = (verlet::verlet(), Control::Fixed { step_s });
+        Self { table, control, name: "velocity Verlet, fixed step" }
     }
 }

@@ -1,18 +1,19 @@
 //! The loop itself: step, error control, event location, observers.
 
-use super::dense::Piece;
+use super::dense::{Piece, StageWeights};
 use super::forces::{Gates, Pass};
-use super::gate::{Event, Watch};
+use super::gate::{Event, GateWatch};
 use super::meter::Meter;
 use super::outcome::{Flow, Limits, Observer, Outcome, SolveError, Work};
 use super::settings::{check, most_passes};
-use super::state::State;
+use super::state::WaveState;
 use super::step::stage;
 use super::table::Table;
-use super::window::Window;
-use super::zones::Slow;
+use super::window::MovingBodies;
+use super::zones::LongStep;
 use super::{Control, Method};
 use crate::system::System;
+use std::cell::Cell;
 use std::ops::Range;
 
 /// Runs one shot until an observer is finished or the duration is over.
@@ -21,13 +22,12 @@ use std::ops::Range;
 /// See [`SolveError`].
 pub fn run(
     system: &System,
-    method: &dyn Method,
+    method: &Method,
     limits: Limits,
     observers: &mut [&mut dyn Observer],
 ) -> Result<Outcome, SolveError> {
-    let table = method.table();
-    check(method.control(), &limits, system)?;
-    let mut wave = Wave::new(system, &table, method.control(), limits);
+    check(method.control, &limits, system)?;
+    let mut wave = Wave::new(system, &method.table, method.control, limits);
     wave.first_accelerations();
     let mut finished = false;
     while !finished && wave.state.time_s < limits.duration_s {
@@ -41,13 +41,13 @@ pub(super) struct Wave<'a> {
     pub(super) table: &'a Table,
     pub(super) control: Control,
     pub(super) limits: Limits,
-    pub(super) state: State,
-    pub(super) window: Window,
+    pub(super) state: WaveState,
+    pub(super) window: MovingBodies,
     pub(super) pass: Pass,
-    pub(super) watch: Watch,
+    pub(super) watch: GateWatch,
     pub(super) meter: Option<Meter>,
     /// The long step that slow bodies take beside short ones.
-    pub(super) slow: Slow,
+    pub(super) slow: LongStep,
     pub(super) gates: Gates,
     pub(super) a: Vec<Vec<f64>>,
     pub(super) x: Vec<f64>,
@@ -67,21 +67,22 @@ const FIRST_STEP: f64 = 1e-3;
 
 impl<'a> Wave<'a> {
     fn new(system: &'a System, table: &'a Table, control: Control, limits: Limits) -> Self {
-        let state = State::start(system);
+        let state = WaveState::start(system);
         let bodies = || vec![0.0; system.bodies()];
         let tolerance = match control {
             Control::Adaptive { tolerance } => tolerance,
             Control::Fixed { .. } => 0.0,
         };
-        let window = Window::new(system, &state, (table.stages(), tolerance), limits.whole_chain);
+        let window =
+            MovingBodies::new(system, &state, (table.stages(), tolerance), limits.whole_chain);
         let adaptive = matches!(control, Control::Adaptive { .. });
         let two_clocks = adaptive && window.sleeps_again() && !system.has_memory;
         Self {
             window,
-            slow: Slow::new(system, table.stages(), two_clocks),
+            slow: LongStep::new(system, table.stages(), two_clocks),
             gates: if adaptive { Gates::Frozen } else { Gates::Instant },
             pass: Pass::new(system),
-            watch: Watch::new(system, tolerance),
+            watch: GateWatch::new(system, tolerance),
             meter: limits.budget.then(|| Meter::new(system, &state, table.stages())),
             a: vec![bodies(); table.stages()],
             x: state.x.clone(),
@@ -123,7 +124,7 @@ impl<'a> Wave<'a> {
         if let Some(meter) = &mut self.meter {
             let parts = match usual {
                 true => [contacts, 0..0],
-                false => Slow::contacts(&self.slow.quick, &bodies),
+                false => LongStep::contacts(&self.slow.quick, &bodies),
             };
             meter.stage(stage, self.system, &mut self.pass, parts, self.v[0]);
         }
@@ -155,7 +156,7 @@ impl<'a> Wave<'a> {
         let bodies = self.moving();
         let start = (&self.state.x[..], &self.state.v[..]);
         let out = (&mut self.x[..], &mut self.v[..]);
-        stage(bodies, (h, node), (position, velocity), start, &self.a, out);
+        stage(self.pass.set, bodies, (h, node), (position, velocity), start, &self.a, out);
         if let Some(motion) = &self.system.motion {
             (self.x[0], self.v[0]) = motion.at(self.state.time_s + node * h);
         }
@@ -267,6 +268,7 @@ impl<'a> Wave<'a> {
             },
             slow: self.slow.active.then_some(&self.slow),
             meter: self.meter.as_ref(),
+            weights: Cell::new((f64::NAN, StageWeights::default())),
         }
     }
 
@@ -331,9 +333,7 @@ impl<'a> Wave<'a> {
     /// With fixed steps modes only report to the energy budget what touches.
     fn follow_gates(&mut self) -> bool {
         for contact in self.contacts() {
-            let touches = self.state.overlap(self.system, contact) >= 0.0;
-            let mode = if touches { super::state::Mode::Closed } else { super::state::Mode::Open };
-            self.state.set(contact, mode);
+            self.state.follow(self.system, contact);
         }
         false
     }

@@ -4,7 +4,7 @@ use crate::system::System;
 
 /// What a contact does while a step lasts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Mode {
+pub(crate) enum ContactMode {
     /// The bodies do not touch.
     Open,
     /// They touch and the laws act.
@@ -14,11 +14,11 @@ pub(crate) enum Mode {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct State {
+pub(crate) struct WaveState {
     pub time_s: f64,
     pub x: Vec<f64>,
     pub v: Vec<f64>,
-    pub mode: Vec<Mode>,
+    pub mode: Vec<ContactMode>,
     /// 1 where the laws' force acts, 0 elsewhere.
     pub passing: Vec<f64>,
     /// 1 where the bodies touch, 0 elsewhere.
@@ -27,7 +27,7 @@ pub(crate) struct State {
     pub largest: Vec<f64>,
 }
 
-impl State {
+impl WaveState {
     /// The start of a shot. Contacts without a gap count as closed: their
     /// force is 0 until they are pressed.
     pub(super) fn start(system: &System) -> Self {
@@ -36,7 +36,7 @@ impl State {
             time_s: 0.0,
             x: system.displacement_m.clone(),
             v: system.velocity_m_s.clone(),
-            mode: vec![Mode::Open; contacts],
+            mode: vec![ContactMode::Open; contacts],
             passing: vec![0.0; contacts],
             touching: vec![0.0; contacts],
             largest: vec![0.0; contacts],
@@ -46,7 +46,7 @@ impl State {
             state.largest[contact] = overlap.max(system.offset_m[contact]).max(0.0);
             let leaving = overlap == 0.0 && state.v[contact] < state.v[contact + 1];
             if overlap >= 0.0 && !leaving {
-                state.set(contact, Mode::Closed);
+                state.set(contact, ContactMode::Closed);
             }
         }
         state
@@ -57,9 +57,20 @@ impl State {
         system.offset_m[contact] - (self.x[contact + 1] - self.x[contact])
     }
 
-    pub(super) fn set(&mut self, contact: usize, mode: Mode) {
+    /// Closes a contact where it overlaps, else opens it.
+    pub(super) fn follow(&mut self, system: &System, contact: usize) {
+        let mode = match self.overlap(system, contact) >= 0.0 {
+            true => ContactMode::Closed,
+            false => ContactMode::Open,
+        };
+        if self.mode[contact] != mode {
+            self.set(contact, mode);
+        }
+    }
+
+    pub(super) fn set(&mut self, contact: usize, mode: ContactMode) {
         self.mode[contact] = mode;
-        self.passing[contact] = f64::from(u8::from(mode == Mode::Closed));
-        self.touching[contact] = f64::from(u8::from(mode != Mode::Open));
+        self.passing[contact] = f64::from(u8::from(mode == ContactMode::Closed));
+        self.touching[contact] = f64::from(u8::from(mode != ContactMode::Open));
     }
 }

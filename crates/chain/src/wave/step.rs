@@ -1,10 +1,17 @@
 //! Stages of one step: weighted sums of accelerations.
 
+use super::dense::StageWeights;
+use crate::instruction_set::InstructionSet;
+use fearless_simd::{dispatch, f64x4, prelude::*};
 use std::ops::Range;
+
+/// Bodies or contacts that are computed side by side; each has the bits that it has alone.
+pub(super) const LANES: usize = 4;
 
 /// Velocities and positions of a stage from those at the start of the step:
 /// V = v + h Σ w_j A_j, X = x + h c v + h² Σ u_j A_j.
 pub(super) fn stage(
+    set: InstructionSet,
     bodies: Range<usize>,
     (h, node): (f64, f64),
     (position, velocity): (&[f64], &[f64]),
@@ -15,19 +22,25 @@ pub(super) fn stage(
     let start = (&x[bodies.clone()], &v[bodies.clone()]);
     let out = (&mut x_out[bodies.clone()], &mut v_out[bodies.clone()]);
     let weights = (position, velocity);
-    match velocity.len() {
-        1 => combine::<1>(bodies, (h, node), weights, start, a, out),
-        2 => combine::<2>(bodies, (h, node), weights, start, a, out),
-        3 => combine::<3>(bodies, (h, node), weights, start, a, out),
-        4 => combine::<4>(bodies, (h, node), weights, start, a, out),
-        5 => combine::<5>(bodies, (h, node), weights, start, a, out),
-        6 => combine::<6>(bodies, (h, node), weights, start, a, out),
-        _ => combine::<7>(bodies, (h, node), weights, start, a, out),
-    }
+    let step = (h, node);
+    dispatch!(set.level(), simd => simd.vectorize(
+        #[inline(always)]
+        || match velocity.len() {
+            1 => combine::<_, 1>(simd, bodies, step, weights, start, a, out),
+            2 => combine::<_, 2>(simd, bodies, step, weights, start, a, out),
+            3 => combine::<_, 3>(simd, bodies, step, weights, start, a, out),
+            4 => combine::<_, 4>(simd, bodies, step, weights, start, a, out),
+            5 => combine::<_, 5>(simd, bodies, step, weights, start, a, out),
+            6 => combine::<_, 6>(simd, bodies, step, weights, start, a, out),
+            _ => combine::<_, 7>(simd, bodies, step, weights, start, a, out),
+        }
+    ));
 }
 
 /// The sum with a number of stages known at compile time, so that it unrolls.
-fn combine<const S: usize>(
+#[inline(always)]
+fn combine<S: Simd, const STAGES: usize>(
+    simd: S,
     bodies: Range<usize>,
     (h, node): (f64, f64),
     (position, velocity): (&[f64], &[f64]),
@@ -36,15 +49,29 @@ fn combine<const S: usize>(
     (x_out, v_out): (&mut [f64], &mut [f64]),
 ) {
     let n = bodies.len();
-    let a: [&[f64]; S] = std::array::from_fn(|j| &a[j][bodies.clone()][..n]);
-    let moved: [f64; S] = std::array::from_fn(|j| h * h * position[j]);
-    let sped: [f64; S] = std::array::from_fn(|j| h * velocity[j]);
+    let a: [&[f64]; STAGES] = std::array::from_fn(|j| &a[j][bodies.clone()][..n]);
+    let moved: [f64; STAGES] = std::array::from_fn(|j| h * h * position[j]);
+    let sped: [f64; STAGES] = std::array::from_fn(|j| h * velocity[j]);
     let (x, v) = (&x[..n], &v[..n]);
     let (x_out, v_out) = (&mut x_out[..n], &mut v_out[..n]);
     let drift = h * node;
-    for i in 0..n {
+    let whole = n - n % LANES;
+    for i in (0..whole).step_by(LANES) {
+        let load = |values: &[f64]| f64x4::from_slice(simd, &values[i..i + LANES]);
+        let zero = f64x4::splat(simd, 0.0);
+        let (mut dx, mut dv) = (zero, zero);
+        for j in 0..STAGES {
+            let a = load(a[j]);
+            dx += a * moved[j];
+            dv += a * sped[j];
+        }
+        let v = load(v);
+        (load(x) + (v * drift + dx)).store_slice(&mut x_out[i..i + LANES]);
+        (v + dv).store_slice(&mut v_out[i..i + LANES]);
+    }
+    for i in whole..n {
         let (mut dx, mut dv) = (0.0, 0.0);
-        for j in 0..S {
+        for j in 0..STAGES {
             dx += moved[j] * a[j][i];
             dv += sped[j] * a[j][i];
         }
@@ -53,40 +80,96 @@ fn combine<const S: usize>(
     }
 }
 
-/// Bodies whose errors are summed side by side.
-const LANES: usize = 8;
+/// Most stages of a method.
+pub(super) const MOST_STAGES: usize = 7;
+
+/// Error estimates of a step, in units of the scales.
+struct Errors<'a> {
+    a: &'a [Vec<f64>],
+    /// Weights of each stage's acceleration for velocity and position.
+    weights: StageWeights,
+}
+
+impl<'a> Errors<'a> {
+    #[inline(always)]
+    fn new(
+        h: f64,
+        [velocity, position]: &[Vec<f64>; 2],
+        a: &'a [Vec<f64>],
+        (speed, length): (f64, f64),
+    ) -> Self {
+        let weight = |of: &[f64], j: usize| of.get(j).copied().unwrap_or(0.0);
+        let weights = |j| [h * weight(velocity, j) / speed, h * h * weight(position, j) / length];
+        Self { a, weights: std::array::from_fn(weights) }
+    }
+
+    /// That of a body; NaN if anything is.
+    #[inline(always)]
+    fn of(&self, body: usize) -> f64 {
+        let (mut dv, mut dx) = (0.0, 0.0);
+        for (a, [sped, moved]) in self.a.iter().zip(self.weights) {
+            dv += sped * a[body];
+            dx += moved * a[body];
+        }
+        dv.abs().max(dx.abs()) + 0.0 * (dv + dx)
+    }
+
+    /// Those of [`LANES`] bodies.
+    #[inline(always)]
+    fn from<S: Simd>(&self, simd: S, body: usize) -> f64x4<S> {
+        let zero = f64x4::splat(simd, 0.0);
+        let (mut dv, mut dx) = (zero, zero);
+        for (a, [sped, moved]) in self.a.iter().zip(self.weights) {
+            let a = f64x4::from_slice(simd, &a[body..body + LANES]);
+            dv += a * sped;
+            dx += a * moved;
+        }
+        dv.abs().max(dx.abs()) + (dv + dx) * 0.0
+    }
+}
 
 /// The largest error estimate of a step, in units of the scales, and the
 /// body that has it. NaN where any estimate is NaN.
 pub(super) fn error_norm(
+    set: InstructionSet,
     bodies: Range<usize>,
     h: f64,
-    [velocity, position]: &[Vec<f64>; 2],
+    weights: &[Vec<f64>; 2],
     a: &[Vec<f64>],
-    (speed, length): (f64, f64),
+    scales: (f64, f64),
 ) -> (f64, usize) {
+    let errors = Errors::new(h, weights, a, scales);
+    dispatch!(set.level(), simd => simd.vectorize(
+        #[inline(always)]
+        || largest(simd, bodies, &errors)
+    ))
+}
+
+#[inline(always)]
+fn largest<S: Simd>(simd: S, bodies: Range<usize>, errors: &Errors<'_>) -> (f64, usize) {
     let (mut worst, mut at) = (0.0_f64, bodies.start);
-    let mut first = bodies.start;
-    while first < bodies.end {
-        let count = LANES.min(bodies.end - first);
-        let (mut dv, mut dx) = ([0.0; LANES], [0.0; LANES]);
-        for (a, (speed_weight, length_weight)) in a.iter().zip(velocity.iter().zip(position)) {
-            let (sped, moved) = (h * speed_weight / speed, h * h * length_weight / length);
-            for (lane, value) in a[first..first + count].iter().enumerate() {
-                dv[lane] += sped * value;
-                dx[lane] += moved * value;
+    let mut body = bodies.start;
+    while body < bodies.end {
+        let mut count = 1;
+        if body + LANES <= bodies.end {
+            count = LANES;
+            let errors = errors.from(simd, body);
+            let small = errors.simd_le(f64x4::splat(simd, worst));
+            if small.all_true() {
+                body += count;
+                continue;
             }
         }
-        for lane in 0..count {
-            let error = dv[lane].abs().max(dx[lane].abs()) + 0.0 * (dv[lane] + dx[lane]);
+        for body in body..body + count {
+            let error = errors.of(body);
             if error.is_nan() {
-                return (error, first + lane);
+                return (error, body);
             }
             if error > worst {
-                (worst, at) = (error, first + lane);
+                (worst, at) = (error, body);
             }
         }
-        first += count;
+        body += count;
     }
     (worst, at)
 }
@@ -97,17 +180,13 @@ pub(super) fn worse_than(
     limit: f64,
     bodies: Range<usize>,
     h: f64,
-    [velocity, position]: &[Vec<f64>; 2],
+    weights: &[Vec<f64>; 2],
     a: &[Vec<f64>],
-    (speed, length): (f64, f64),
+    scales: (f64, f64),
 ) -> Option<Range<usize>> {
+    let errors = Errors::new(h, weights, a, scales);
     let is_worse = |body: &usize| {
-        let (mut dv, mut dx) = (0.0, 0.0);
-        for (a, (speed_weight, length_weight)) in a.iter().zip(velocity.iter().zip(position)) {
-            dv += h * speed_weight / speed * a[*body];
-            dx += h * h * length_weight / length * a[*body];
-        }
-        let error = dv.abs().max(dx.abs()) + 0.0 * (dv + dx);
+        let error = errors.of(*body);
         error > limit || error.is_nan()
     };
     let first = bodies.clone().find(is_worse)?;

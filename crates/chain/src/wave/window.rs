@@ -5,7 +5,7 @@
 //! contacts are open or relaxed fly on straight lines and are left out too, on
 //! both sides of what still moves; in long chains only.
 
-use super::state::State;
+use super::state::WaveState;
 use crate::system::System;
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ const RELAXED: f64 = 1e-13;
 const AT_REST_UNDER_LOAD: f64 = 1e-17;
 
 #[derive(Clone, Debug)]
-pub(crate) struct Window {
+pub(crate) struct MovingBodies {
     pub bodies: Range<usize>,
     /// Since when each body outside the window flies or rests, in s.
     pub asleep_since_s: Vec<f64>,
@@ -42,10 +42,10 @@ pub(crate) struct Window {
     until_look: usize,
 }
 
-impl Window {
+impl MovingBodies {
     pub(super) fn new(
         system: &System,
-        state: &State,
+        state: &WaveState,
         (stages, tolerance): (usize, f64),
         whole_chain: bool,
     ) -> Self {
@@ -75,7 +75,7 @@ impl Window {
         window
     }
 
-    fn moves(&self, state: &State, body: usize) -> bool {
+    fn moves(&self, state: &WaveState, body: usize) -> bool {
         state.x[body].abs() > self.length_floor || state.v[body].abs() > self.speed_floor
     }
 
@@ -91,7 +91,7 @@ impl Window {
 
     /// Within a long step: wakes what short steps may have reached, on the sides
     /// (of the striker, of the wall) where they go to the window's edge.
-    pub(super) fn keep_up(&mut self, system: &System, state: &mut State, sides: [bool; 2]) {
+    pub(super) fn keep_up(&mut self, system: &System, state: &mut WaveState, sides: [bool; 2]) {
         if sides[0] {
             self.wake_before(system, state);
         }
@@ -102,7 +102,7 @@ impl Window {
     }
 
     /// Wakes what the last step may have reached, and lets sleep what relaxed.
-    pub(super) fn follow(&mut self, system: &System, state: &mut State) {
+    pub(super) fn follow(&mut self, system: &System, state: &mut WaveState) {
         self.wake_untouched(state);
         if !self.sleeps_again {
             return;
@@ -119,7 +119,7 @@ impl Window {
 
     /// A step moves at most `stages` more bodies: that many must be at rest
     /// at the window's edge.
-    fn wake_untouched(&mut self, state: &State) {
+    fn wake_untouched(&mut self, state: &WaveState) {
         let all = state.x.len();
         while self.bodies.end == self.untouched
             && self.bodies.end < all
@@ -130,7 +130,7 @@ impl Window {
         }
     }
 
-    fn is_quiet(&self, system: &System, state: &State, contact: usize) -> bool {
+    fn is_quiet(&self, system: &System, state: &WaveState, contact: usize) -> bool {
         if !system.has_contact(contact) {
             return true;
         }
@@ -142,7 +142,7 @@ impl Window {
     }
 
     /// Brings the positions of bodies up to date.
-    fn wake(&mut self, state: &mut State, bodies: Range<usize>) {
+    fn wake(&mut self, state: &mut WaveState, bodies: Range<usize>) {
         for i in bodies {
             state.x[i] += state.v[i] * (state.time_s - self.asleep_since_s[i]);
             self.asleep_since_s[i] = state.time_s;
@@ -150,7 +150,7 @@ impl Window {
     }
 
     /// Wakes bodies on the striker's side that something is about to reach.
-    fn wake_before(&mut self, system: &System, state: &mut State) {
+    fn wake_before(&mut self, system: &System, state: &mut WaveState) {
         let first = self.bodies.start;
         let edge = first..(first + self.margin).min(self.bodies.end - 1);
         if first > 0 && edge.into_iter().any(|c| !self.is_quiet(system, state, c)) {
@@ -161,7 +161,7 @@ impl Window {
     }
 
     /// The same on the wall's side, where the wave has been.
-    fn wake_beyond(&mut self, system: &System, state: &mut State) {
+    fn wake_beyond(&mut self, system: &System, state: &mut WaveState) {
         let end = self.bodies.end;
         let edge = (end - 1).saturating_sub(self.margin).max(self.bodies.start)..end - 1;
         if end < self.untouched && edge.into_iter().any(|c| !self.is_quiet(system, state, c)) {
@@ -171,7 +171,7 @@ impl Window {
         }
     }
 
-    fn sleep_before(&mut self, system: &System, state: &State) {
+    fn sleep_before(&mut self, system: &System, state: &WaveState) {
         let first = self.bodies.start;
         let quiet_until = (first..self.bodies.end - 1)
             .find(|&c| !self.is_quiet(system, state, c))
@@ -183,7 +183,7 @@ impl Window {
         }
     }
 
-    fn sleep_beyond(&mut self, system: &System, state: &State) {
+    fn sleep_beyond(&mut self, system: &System, state: &WaveState) {
         let end = self.bodies.end;
         // Ahead of a wave that still runs on, everything is quiet for good.
         if self.bodies.end == self.untouched && end < system.bodies() {
@@ -200,7 +200,7 @@ impl Window {
         }
     }
 
-    pub(super) fn wake_all(&mut self, state: &mut State) {
+    pub(super) fn wake_all(&mut self, state: &mut WaveState) {
         let (first, end) = (self.bodies.start, self.bodies.end);
         self.wake(state, 0..first);
         self.wake(state, end..state.x.len());

@@ -7,7 +7,7 @@
 //! move as the long step's dense output says.
 
 use super::dense::polynomial;
-use super::state::{Mode, State};
+use super::state::WaveState;
 use super::table::Table;
 use crate::system::System;
 use std::ops::Range;
@@ -30,7 +30,7 @@ const RATIOS: (f64, f64) = (3.0, 64.0);
 const ADJUST: f64 = 1.05;
 
 #[derive(Clone, Debug)]
-pub(super) struct Slow {
+pub(super) struct LongStep {
     /// Between the start and the end of a long step.
     pub active: bool,
     pub start_s: f64,
@@ -47,7 +47,7 @@ pub(super) struct Slow {
     wait: usize,
 }
 
-impl Slow {
+impl LongStep {
     /// Of a chain in which it may pay, or of none.
     pub(super) fn new(system: &System, stages: usize, pays: bool) -> Self {
         let bodies = || vec![0.0; if pays { system.bodies() } else { 0 }];
@@ -176,7 +176,13 @@ impl Slow {
     }
 
     /// Displacement and velocity of a body on the long step.
-    pub(super) fn at(&self, table: &Table, state: &State, body: usize, time_s: f64) -> (f64, f64) {
+    pub(super) fn at(
+        &self,
+        table: &Table,
+        state: &WaveState,
+        body: usize,
+        time_s: f64,
+    ) -> (f64, f64) {
         let h = self.step_s;
         let theta = (time_s - self.start_s) / h;
         let (mut moved, mut sped) = (0.0, 0.0);
@@ -189,7 +195,13 @@ impl Slow {
     }
 
     /// A state at a time within the long step: all bodies and gates there.
-    pub(super) fn bring_to(&self, system: &System, table: &Table, state: &mut State, time_s: f64) {
+    pub(super) fn bring_to(
+        &self,
+        system: &System,
+        table: &Table,
+        state: &mut WaveState,
+        time_s: f64,
+    ) {
         if !self.active {
             return;
         }
@@ -202,7 +214,7 @@ impl Slow {
     }
 
     /// The state at the end of the long step.
-    pub(super) fn finish(&mut self, system: &System, state: &mut State) {
+    pub(super) fn finish(&mut self, system: &System, state: &mut WaveState) {
         for body in self.bodies() {
             (state.x[body], state.v[body]) = (self.x[body], self.v[body]);
         }
@@ -213,13 +225,9 @@ impl Slow {
     }
 
     /// Gates that the long step has looked at afresh in every pass.
-    fn set_gates(&self, system: &System, state: &mut State) {
+    fn set_gates(&self, system: &System, state: &mut WaveState) {
         for contact in Self::contacts(&self.quick, &self.window).into_iter().flatten() {
-            let closed = state.overlap(system, contact) >= 0.0;
-            let mode = if closed { Mode::Closed } else { Mode::Open };
-            if state.mode[contact] != mode {
-                state.set(contact, mode);
-            }
+            state.follow(system, contact);
         }
     }
 }

@@ -7,7 +7,7 @@ pub mod random_shots;
 
 use hertzchain_chain::laws::{DampingCubic, DampingViscoelastic, ElasticHertz, Law, law};
 use hertzchain_chain::observe::{Passage, Passages};
-use hertzchain_chain::wave::{DormandPrince, Limits, Method, Outcome, run};
+use hertzchain_chain::wave::{Limits, Method, Outcome, run};
 use hertzchain_chain::*;
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ pub fn row(beads: usize, speed_m_s: f64, laws: Vec<Arc<dyn Law>>) -> Chain {
     }
 }
 
-pub fn shoot_with(chain: &Chain, method: &dyn Method) -> (Passage, Outcome) {
+pub fn shoot_with(chain: &Chain, method: &Method) -> (Passage, Outcome) {
     let system = System::new(chain).unwrap();
     let mut passages = Passages::new(7.min(system.beads()), system.contacts() - 1, true);
     let limits = Limits { budget: true, ..Limits::until(1.0) };
@@ -58,7 +58,7 @@ pub fn shoot_with(chain: &Chain, method: &dyn Method) -> (Passage, Outcome) {
 }
 
 pub fn shoot(chain: &Chain, tolerance: f64) -> (Passage, Outcome) {
-    shoot_with(chain, &DormandPrince { tolerance })
+    shoot_with(chain, &Method::dormand_prince(tolerance))
 }
 
 /// A number that another program computed: `bench/reference/numbers.json`.
@@ -100,5 +100,5 @@ pub fn unit_row(beads: usize, speed: f64, far: FarEnd) -> Chain {
 pub fn run_for(chain: &Chain, tolerance: f64, duration_s: f64) -> Outcome {
     let system = System::new(chain).unwrap();
     let limits = Limits { budget: true, ..Limits::until(duration_s) };
-    run(&system, &DormandPrince { tolerance }, limits, &mut []).unwrap()
+    run(&system, &Method::dormand_prince(tolerance), limits, &mut []).unwrap()
 }

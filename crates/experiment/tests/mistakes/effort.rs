@@ -1,7 +1,7 @@
 //! Steps and durations with which no shot comes to a sensible end.
 
 use super::{DRY, check, line_of, only, refused};
-use hertzchain_chain::wave::{Limits, Rk4, run};
+use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_experiment::Experiment;
 
 const STRIKER: &str = "[striker]\nspeed = \"0.5 m/s\"";
@@ -80,7 +80,7 @@ fn the_least_step_is_one_that_the_wave_loop_finishes() {
         }
     }
     let (system, _) = accepted(least).unwrap();
-    let outcome = run(&system, &Rk4 { step_s: least }, Limits::until(2.0), &mut []).unwrap();
+    let outcome = run(&system, &Method::rk4(least), Limits::until(2.0), &mut []).unwrap();
     assert!(outcome.work.steps > 2_000_000, "{:?}", outcome.work);
 }
 

@@ -3,7 +3,7 @@
 
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::settle::State;
-use hertzchain_chain::wave::{self, DormandPrince, Limits};
+use hertzchain_chain::wave::{self, Limits, Method};
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::records::truth;
 use hertzchain_measure::signal::{ChiSquare, Estimate, Flight, chi_square};
@@ -245,7 +245,7 @@ fn held(
     state.strike(&system, speed_m_s);
     let shot = system.from_state(&state)?;
     let mut passages = Passages::new(experiment.sensor_bead(), shot.beads(), true);
-    let method = DormandPrince { tolerance: TOLERANCE };
+    let method = Method::dormand_prince(TOLERANCE);
     let limits = Limits::until(LONGEST_S);
     wave::run(&shot, &method, limits, &mut [&mut passages])?;
     let (incident, wall, reflected) = passages.peaks()?;

@@ -187,13 +187,13 @@ fn reflected_s(
     let method = adaptive(tolerance(plan).0);
     let system = System::new(&plan.chain)?;
     let until_wall = Limits::until(passage.wall.time_s);
-    let met = run(&system, &*method, until_wall, &mut [])?;
+    let met = run(&system, &method, until_wall, &mut [])?;
     let mut state = State::after(&system, &met);
     change(&system, &mut state);
     let from = system.from_state(&state)?;
     let mut sensor = Signal::new(Sensor::Bead(plan.sensor_bead));
     let way_back = Limits::until(RETURN_WITHIN * passage.tof_incident_s());
-    run(&from, &*method, way_back, &mut [&mut sensor])?;
+    run(&from, &method, way_back, &mut [&mut sensor])?;
     let returning = sensor.maxima().iter();
     let returning = returning.filter(|peak| peak.time_s > 0.0 && peak.value > 0.0);
     let largest = returning.max_by(|a, b| a.value.total_cmp(&b.value));

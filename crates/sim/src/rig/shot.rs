@@ -6,7 +6,7 @@ use crate::rig::{Plan, Purpose, RandomStream, RigError, Series};
 use crate::{StudyError, stopped};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::settle::{Rest, SlowPhase, State, settle};
-use hertzchain_chain::wave::{DormandPrince, Limits, Outcome, run};
+use hertzchain_chain::wave::{Limits, Method, Outcome, run};
 use hertzchain_chain::{Chain, Sensor, System};
 use hertzchain_experiment::{Campaign, Experiment};
 
@@ -187,7 +187,7 @@ pub fn shoot(
     let outcome = {
         let sensors = [Sensor::Bead(sensor_bead), Sensor::Contact(wall)];
         let mut tracer = TraceObserver { trace, sensors };
-        let method = DormandPrince { tolerance: TOLERANCE };
+        let method = Method::dormand_prince(TOLERANCE);
         let limits = Limits::until(LONGEST_WAVE_S);
         run(&shot, &method, limits, &mut [&mut passages, &mut tracer])?
     };

@@ -3,7 +3,7 @@
 use crate::small::{SAME_SPEED, plan, shots};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::settle::State;
-use hertzchain_chain::wave::{self, DormandPrince, Limits};
+use hertzchain_chain::wave::{self, Limits, Method};
 use hertzchain_experiment::Experiment;
 use hertzchain_sim::rig::{
     Bench, MeasuredShot, Plan, Purpose, RandomStream, Window, programmed, shoot,
@@ -125,7 +125,7 @@ fn wave_from(experiment: &Experiment, state: &State, fired: &MeasuredShot) -> f6
     let shot = system.from_state(&state).unwrap();
     let mut passages = Passages::new(experiment.sensor_bead(), shot.beads(), true);
     // As the rig's own wave, for the same bits.
-    let method = DormandPrince { tolerance: 1e-8 };
+    let method = Method::dormand_prince(1e-8);
     wave::run(&shot, &method, Limits::until(0.02), &mut [&mut passages]).unwrap();
     let (incident, wall, _) = passages.peaks().unwrap();
     wall.time_s - incident.time_s
