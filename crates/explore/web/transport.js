@@ -7,15 +7,22 @@ const MOST_WORKERS = Math.max(2, Math.min(8, navigator.hardwareConcurrency ?? 2)
 /** Fewest speeds that a worker is started for. */
 const FEWEST_SPEEDS = 8;
 
-async function bytes() {
+/** Where the engine lies on a host. */
+const ENGINE = "engine.wasm.gz";
+
+async function loaded() {
   const text = embedded("engine");
-  if (text === null) {
-    const response = await fetch("engine.wasm");
-    if (!response.ok) throw new Error(`engine.wasm: ${response.status} ${response.statusText}`);
-    return response.arrayBuffer();
-  }
-  const packed = Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
-  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  if (text !== null) return Uint8Array.from(atob(text.trim()), (character) => character.charCodeAt(0));
+  const response = await fetch(ENGINE);
+  if (!response.ok) throw new Error(`${ENGINE}: ${response.status} ${response.statusText}`);
+  return new Uint8Array(await response.arrayBuffer());
+}
+
+async function bytes() {
+  const packed = await loaded();
+  // Some hosts declare the compression, and the browser has undone it.
+  const isPacked = packed[0] === 0x1f && packed[1] === 0x8b;
+  return isPacked ? new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer() : packed;
 }
 
 let loading = null;

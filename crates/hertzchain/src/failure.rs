@@ -7,7 +7,7 @@ use hertzchain_experiment::{
 use hertzchain_infer::InferError;
 use hertzchain_sim::rig::RigError;
 use hertzchain_sim::{StudyError, parse_speed};
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Severity};
+use miette::{Diagnostic, Severity};
 
 /// Why a verb failed.
 #[derive(Debug)]
@@ -120,12 +120,23 @@ impl Failure {
     }
 }
 
-fn handler(colour: bool) -> GraphicalReportHandler {
+/// A report that underlines the offending text, where that is of readable length.
+#[cfg(not(target_family = "wasm"))]
+fn underlined(finding: &Finding, colour: bool) -> Option<String> {
+    use miette::{GraphicalReportHandler, GraphicalTheme};
     let theme = match colour {
         true => GraphicalTheme::unicode(),
         false => GraphicalTheme::unicode_nocolor(),
     };
-    GraphicalReportHandler::new_themed(theme).with_links(false)
+    let handler = GraphicalReportHandler::new_themed(theme).with_links(false);
+    let mut text = String::new();
+    (fits(finding) && handler.render_report(&mut text, finding).is_ok()).then_some(text)
+}
+
+/// In a page a sentence has to do: its renderer is a thirtieth of the engine.
+#[cfg(target_family = "wasm")]
+fn underlined(_: &Finding, _: bool) -> Option<String> {
+    None
 }
 
 /// Most reports that anybody reads at once.
@@ -143,12 +154,12 @@ fn findings(findings: &[Finding], kind: &str, colour: bool) -> String {
 
 /// Longest line that is shown with something underlined, in bytes; beyond the
 /// renderer's columns there is no place for marks.
+#[cfg(not(target_family = "wasm"))]
 const LONGEST_LINE: usize = 2000;
 
-/// A report that underlines the offending text.
+/// A report, with the offending text underlined where that can be shown.
 pub fn report(finding: &Finding, colour: bool) -> String {
-    let mut text = String::new();
-    if fits(finding) && handler(colour).render_report(&mut text, finding).is_ok() {
+    if let Some(text) = underlined(finding, colour) {
         return format!("{}\n", text.trim_end());
     }
     let kind = match finding.severity() {
@@ -159,6 +170,7 @@ pub fn report(finding: &Finding, colour: bool) -> String {
 }
 
 /// Whether all lines that a report would show are of readable length.
+#[cfg(not(target_family = "wasm"))]
 fn fits(finding: &Finding) -> bool {
     let shown = |label: miette::LabeledSpan| {
         let source = finding.source_code()?;

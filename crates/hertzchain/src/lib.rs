@@ -61,6 +61,9 @@
 //! # Ok::<(), hertzchain::Failure>(())
 //! ```
 
+// Without the program, what it alone uses is dead.
+#![cfg_attr(target_family = "wasm", allow(dead_code))]
+
 mod bibliography;
 pub mod campaign;
 mod contact;

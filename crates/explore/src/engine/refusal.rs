@@ -6,7 +6,7 @@ use hertzchain_sim::StudyError;
 use miette::Diagnostic;
 use serde::Serialize;
 use std::ops::Range;
-use toml_edit::{Document, Item, Table, Value};
+use toml_edit::{Document, Item, TableLike, Value};
 
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -71,7 +71,7 @@ impl Mistake {
         let document = Document::parse(text).ok();
         let mut places = Vec::new();
         if let Some(document) = &document {
-            of_table(document.as_table(), &mut Vec::new(), &mut places);
+            of_table(document.as_table(), None, &mut Vec::new(), &mut places);
         }
         findings.iter().map(|finding| Self::of(finding, &places)).collect()
     }
@@ -94,9 +94,14 @@ impl Mistake {
 /// Bytes of a value, or of its key, and what leads to it.
 type Place = (Range<usize>, Vec<Step>);
 
-fn of_table(table: &Table, path: &mut Vec<Step>, places: &mut Vec<Place>) {
-    places.extend(table.span().map(|span| (span, path.clone())));
-    for (name, item) in table {
+fn of_table(
+    table: &dyn TableLike,
+    span: Option<Range<usize>>,
+    path: &mut Vec<Step>,
+    places: &mut Vec<Place>,
+) {
+    places.extend(span.map(|span| (span, path.clone())));
+    for (name, item) in table.iter() {
         path.push(Step::Key(name.to_owned()));
         let key = table.key(name).and_then(toml_edit::Key::span);
         places.extend(key.map(|span| (span, path.clone())));
@@ -109,11 +114,11 @@ fn of_item(item: &Item, path: &mut Vec<Step>, places: &mut Vec<Place>) {
     match item {
         Item::None => {}
         Item::Value(value) => of_value(value, path, places),
-        Item::Table(table) => of_table(table, path, places),
+        Item::Table(table) => of_table(table, table.span(), path, places),
         Item::ArrayOfTables(tables) => {
             for (at, table) in tables.iter().enumerate() {
                 path.push(Step::Index(at));
-                of_table(table, path, places);
+                of_table(table, table.span(), path, places);
                 path.pop();
             }
         }
@@ -130,15 +135,7 @@ fn of_value(value: &Value, path: &mut Vec<Step>, places: &mut Vec<Place>) {
                 path.pop();
             }
         }
-        Value::InlineTable(table) => {
-            for (name, value) in table {
-                path.push(Step::Key(name.to_owned()));
-                let key = table.key(name).and_then(toml_edit::Key::span);
-                places.extend(key.map(|span| (span, path.clone())));
-                of_value(value, path, places);
-                path.pop();
-            }
-        }
+        Value::InlineTable(table) => of_table(table, None, path, places),
         _ => {}
     }
 }
