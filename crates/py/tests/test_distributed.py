@@ -91,7 +91,7 @@ def test_work_is_cut_so_that_every_thread_has_some(small, client, tmp_path):
 
 def test_many_shots_are_cut_by_workers_and_by_size(client):
     def parts(shots: int, client: Client | None) -> int:
-        return distributed._parts(shots, -(-shots // distributed.SHOTS_A_SHARD), distributed.SHARDS_A_THREAD, client)
+        return distributed._parts(shots, -(-shots // distributed.SHOTS_A_SHARD), client)
 
     assert [parts(shots, client) for shots in (1, 5, 16_000, 1_000_000)] == [1, 5, 8, 50]
     assert [parts(shots, None) for shots in (1, 16_000, 1_000_000)] == [1, 1, 50]

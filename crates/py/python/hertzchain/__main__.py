@@ -6,13 +6,7 @@ from ._hertzchain import run_program
 
 
 def main() -> int:
-    """Runs the program with the arguments of this process.
-
-    Returns
-    -------
-    int
-        Its exit code: 0, 2 for a mistake of the user, 1 for any other failure.
-    """
+    """Runs the program with this process' arguments; returns 0, 2 for a mistake of the user, or 1."""
     return run_program(["hertzchain", *sys.argv[1:]])
 
 

@@ -8,14 +8,15 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from difflib import get_close_matches
 from functools import lru_cache
-from inspect import Parameter, signature
+from inspect import Parameter, cleandoc, signature
 from numbers import Integral
-from textwrap import wrap
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from textwrap import fill, indent
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -36,24 +37,50 @@ def declared(verb: str) -> dict[str, tuple[str, str | None, str]]:
     return {NAMES.get(name, name): parts for name, *parts in _native.options(verb)}  # type: ignore[misc]
 
 
-def with_options(verb: str) -> Callable[[Function], Function]:
-    """Completes signature and docstring of a function that takes ``**options``."""
+# Parameters of several functions: type and description; {} is what progress counts.
+SHARED = {
+    "experiment": ("Experiment or str or path", "The chain and its striker; or the name of a preset, or a file."),
+    "speed": ("float or str, optional", 'Speed of the striker in m/s, or a text such as ``"50 cm/s"``; the experiment\'s own when absent.'),
+    "threads": ("int, optional", "Threads to compute with; all cores when absent."),
+    "client": ("dask.distributed.Client, optional", "Everything stays in this process when absent."),
+    "progress": (
+        "bool, bar or function, optional",
+        "True draws tqdm's bar; a bar's ``update``, or a function, is called with the number of {} since the last time.",
+    ),
+    "ax": ("Axes, optional", "To draw into; a new figure's when absent."),
+}
+PARAMETERS = re.compile(r"Parameters\n-+\n(?P<entries>(?:.*\n)*?)(?=\n\w+\n-+\n)")
+
+
+def with_options(verb: str | None, counted: str = "shots") -> Callable[[Function], Function]:
+    """Completes signature and docstring of a function: shared parameters, and options of a verb."""
 
     def complete(function: Function) -> Function:
-        own = [one for one in signature(function).parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
-        taken = {one.name for one in own}
-        keywords, lines = [], []
-        for name, (kind, default, text) in declared(verb).items():
-            if name not in taken:
-                keywords.append(Parameter(name, Parameter.KEYWORD_ONLY, default=_default(default)))
-                optional = ", optional" if default is None else ""
-                lines += [f"    {name} : {kind}{optional}", *wrap(f"{text}.", 100, initial_indent=" " * 8, subsequent_indent=" " * 8)]
-        function.__signature__ = signature(function).replace(parameters=[*own, *keywords])  # type: ignore[attr-defined]
-        if function.__doc__ is not None:
-            function.__doc__ = function.__doc__.replace("    **options", "\n".join(lines), 1)
+        text = cleandoc(function.__doc__ or "")
+        known = signature(function)
+        own = [one for one in known.parameters.values() if verb is None or one.kind is not Parameter.VAR_KEYWORD]
+        options = {} if verb is None else declared(verb)
+        added = {name: parts for name, parts in options.items() if name not in known.parameters}
+        keywords = [Parameter(name, Parameter.KEYWORD_ONLY, default=_default(default)) for name, (_, default, _) in added.items()]
+        function.__signature__ = known.replace(parameters=[*own, *keywords])  # type: ignore[attr-defined]
+        if (section := PARAMETERS.search(text)) is not None:
+            heads = re.findall(r"^(\w.*?)(?: :|$)", section["entries"], re.MULTILINE)
+            described = {name.strip() for head in heads for name in head.split(",")}
+            shared = {one.name: SHARED[one.name] for one in own if one.name in SHARED and one.name not in described}
+            # The experiment comes first in every signature, then the speed.
+            first = {name: shared.pop(name) for name in ("experiment", "speed") if name in shared}
+            rest = {name: (f"{kind}, optional" if default is None else kind, f"{about}.") for name, (kind, default, about) in added.items()}
+            entries = _entries(first) + section["entries"] + _entries(shared | rest).replace("{}", counted)
+            function.__doc__ = text[: section.start("entries")] + entries + text[section.end() :]
         return function
 
     return complete
+
+
+def _entries(described: Mapping[str, tuple[str, str]]) -> str:
+    """Entries of a section, from types and descriptions by name."""
+    lines = (f"{name} : {kind}\n{indent(fill(about, 96), '    ')}\n" for name, (kind, about) in described.items())
+    return "".join(lines)
 
 
 def _default(default: str | None) -> Any:
@@ -109,13 +136,6 @@ def count(name: str, value: int | None, least: int = 0, most: int = 1024) -> int
     return value
 
 
-@runtime_checkable
-class Updating(Protocol):
-    """A progress bar such as tqdm's."""
-
-    def update(self, n: float | None = 1) -> object: ...
-
-
 @contextmanager
 def progress(wanted: object, total: int | None, unit: str) -> Iterator[Any]:
     """The function to call with progress; a bar that was drawn for it is closed in the end.
@@ -134,9 +154,7 @@ def progress(wanted: object, total: int | None, unit: str) -> Iterator[Any]:
             ) from None
         with tqdm(total=total, unit=unit) as bar:
             yield bar.update
-    elif isinstance(wanted, Updating):
-        yield wanted.update
-    elif callable(wanted):
-        yield wanted
+    elif callable(update := getattr(wanted, "update", wanted)):
+        yield update
     else:
         raise OptionError(f"progress = {wanted!r}: expected True, a bar with `update`, or a function")

@@ -1,11 +1,10 @@
 """Sweeps, ensembles, campaigns and posteriors on a ``dask.distributed`` client, shard by shard.
 
-``pip install hertzchain[dask]``. A shard is a part of a run, named by a hash of
-everything that its numbers follow from; its bits depend neither on where nor
-when nor beside what it is computed. Workers write shards as HDF5 files into a
-folder that all of them see; the scheduler hears of their names alone. What is
-there and whole is not computed again: a run that was broken off goes on with the
-same call. Without a client everything stays in this process.
+``pip install hertzchain[dask]``. A shard is a part of a run, named by a hash of everything that its
+numbers follow from; its bits depend neither on where nor when nor beside what it is computed.
+Workers write shards as HDF5 files into a folder that all of them see; the scheduler hears of their
+names alone. What is there and whole is not computed again: a run that was broken off goes on with
+the same call. Without a client everything stays in this process.
 
 >>> from dask.distributed import Client  # doctest: +SKIP
 >>> with Client("scheduler:8786") as client:  # doctest: +SKIP
@@ -69,10 +68,8 @@ Outcome = tuple[int, "bool | str"]
 """Number of a shard, and whether it was there before or why it failed."""
 Task = Callable[..., Outcome]
 Arguments = Callable[[int], tuple[Any, ...]]
-"""Of the task of a shard's number."""
 Batches = list[tuple[str, list[list[float]]]]
 """Names and points."""
-
 
 
 @dataclass(frozen=True, repr=False)
@@ -97,10 +94,7 @@ class DistributedResult(Result):
     shards: int
     kept: int
     failed: dict[int, str]
-    _run: _native.Run | None = None
-    _experiment: Experiment | None = None
-    _shape: tuple[int, ...] = ()
-    _names: tuple[str, ...] = ()
+    _work: tuple[_native.Run, Experiment, tuple[int, ...], tuple[str, ...]] | None = None
 
     def load(self) -> Ensemble:
         """All shards put together: the bits of a run in one process.
@@ -115,12 +109,12 @@ class DistributedResult(Result):
         OptionError
             Shards that are missing, damaged, or of several runs; a campaign's.
         """
-        if self._run is None or self._experiment is None:
+        if self._work is None:
             raise OptionError("recordings of a campaign are measured, not loaded: see hertzchain.measure")
+        run, experiment, shape, names = self._work
         found = _native.gather(str(self.folder))
         found["columns"].pop("speed_m_s")
-        found |= {"speed_m_s": self._run.speeds(), "values": self._run.values()}
-        return gathered(self._experiment, self._shape, self._names, found)
+        return gathered(experiment, shape, names, {**found, "speed_m_s": run.speeds(), "values": run.values()})
 
     def _columns(self) -> dict[str, list[Any]]:
         numbers = list(range(1, self.shards + 1))
@@ -165,10 +159,10 @@ def _threads(client: Client | None) -> int:
     return 0 if client is None else 1
 
 
-def _parts(most: int, least: int, a_thread: int, client: Client | None) -> int:
+def _parts(most: int, least: int, client: Client | None) -> int:
     """Number of parts of work, at most ``most``, so that all threads of the workers have some."""
     threads = 0 if client is None else _cluster_threads(client) or UNKNOWN
-    return max(1, least, min(most, a_thread * threads))
+    return max(1, least, min(most, SHARDS_A_THREAD * threads))
 
 
 def _cut(folder: Path, name: str) -> int | None:
@@ -177,18 +171,18 @@ def _cut(folder: Path, name: str) -> int | None:
     return int(max(found, key=found.count)) if found else None
 
 
-def _shard(path: str, name: str, number: int, of: int, threads: int) -> tuple[int, bool | str]:
+def _shard(path: str, name: str, number: int, of: int, threads: int) -> Outcome:
     """Computes a shard of a sweep on a worker."""
     folder = str(Path(path).parent)
     return _outcome_of(number, lambda: _opened(path, name).shard(number, of, folder, threads))
 
 
-def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None, threads: int) -> tuple[int, bool | str]:
+def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None, threads: int) -> Outcome:
     """Runs a part of a campaign on a worker."""
 
     def is_stored() -> bool:
-        how = {"out": out, "shard": f"{number}/{of}", "seed": seed, "threads": threads or None}
-        done = _native.campaign(experiment, options.text("campaign", {}, **how), None)
+        how = options.text("campaign", {}, out=out, shard=f"{number}/{of}", seed=seed, threads=threads or None)
+        done = _native.campaign(experiment, how, None)
         if done["failed"]:
             raise OptionError("; ".join(done["failed"]))
         return done["kept"] > 0 and done["run"] == 0
@@ -201,7 +195,7 @@ def _outcomes(path: str, name: str, points: list[list[float]]) -> list[Any]:
     return _opened(path, name).outcomes(points)
 
 
-@options.with_options("sweep")
+@options.with_options("sweep", "finished shards")
 def sweep(
     experiment: Experiment | options.Path_,
     speed: ArrayLike | None = None,
@@ -215,7 +209,8 @@ def sweep(
 ) -> DistributedResult:
     """Computes shots over arrays of speeds and of named numbers on a cluster.
 
-    Shards, clusters and what they cost: docs/how-to/many-machines.md.
+    Shards, clusters and what they cost: docs/how-to/many-machines.md. All workers must have the build
+    and the instruction set of the caller. A shard has the bits of ``hertzchain sweep --shard i/n``.
 
     Parameters
     ----------
@@ -224,14 +219,9 @@ def sweep(
     folder : path
         Where shards go, seen by all workers under this name. The same folder
         again goes on where a run was broken off.
-    client : dask.distributed.Client, optional
-        Everything stays in this process when absent.
     shards : int, optional
         Parts of the run. When absent, as many as the folder has some of; else four for each
         thread of the workers, and no part of more than 20,000 shots.
-    progress : bool, bar or function, optional
-        Called with finished shards.
-    **options
 
     Returns
     -------
@@ -244,11 +234,6 @@ def sweep(
         Arrays and names that do not fit.
     ConnectionError
         The scheduler is gone: the same call resumes.
-
-    Notes
-    -----
-    All workers must have the build and the instruction set of the caller: otherwise
-    shards fail. A shard has the bits of ``hertzchain sweep --shard i/n``.
     """
     experiment = opened(experiment)
     speeds, named = broadcast(experiment, speed, parameters)
@@ -256,13 +241,14 @@ def sweep(
     path = _written(run, Path(folder))
     if shards is None:
         least = -(-speeds.size // SHOTS_A_SHARD)
-        shards = _cut(Path(folder), run.name) or _parts(speeds.size, least, SHARDS_A_THREAD, client)
+        shards = _cut(Path(folder), run.name) or _parts(speeds.size, least, client)
     of = options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, of, "shard") as update:
         kept, failed = _run_all(_shard, lambda number: (path, run.name, number, of, _threads(client)), of, client, update)
-    return DistributedResult(Path(folder), of, kept, failed, run, experiment, speeds.shape, tuple(named))
+    return DistributedResult(Path(folder), of, kept, failed, (run, experiment, speeds.shape, tuple(named)))
 
 
+@options.with_options(None, "finished shards")
 def campaign(
     experiment: Experiment | options.Path_,
     out: str | os.PathLike[str],
@@ -282,13 +268,9 @@ def campaign(
         As for `hertzchain.campaign`.
     out : path
         Where recordings go, seen by all workers under this name.
-    client : dask.distributed.Client, optional
-        Everything stays in this process when absent.
     shards : int, optional
         Parts into which series are split. When absent, four for each thread of the workers,
         and no more than there are series; one without a client.
-    progress : bool, bar or function, optional
-        Called with finished shards.
 
     Returns
     -------
@@ -305,13 +287,12 @@ def campaign(
     into = str(Path(out).resolve())
     experiment = opened(experiment)
     series = _native.campaign_series(experiment, options.text("campaign", {}, seed=seed))
-    shards = _parts(series, 1, SHARDS_A_THREAD, client) if shards is None else options.count("shards", shards, 1, MOST_SHARDS)
+    shards = _parts(series, 1, client) if shards is None else options.count("shards", shards, 1, MOST_SHARDS)
     with options.progress(progress, shards, "shard") as update:
         kept, failed = _run_all(_series, lambda number: (experiment, into, number, shards, seed, _threads(client)), shards, client, update)
     if len(failed) == shards:
         raise OptionError(next(iter(failed.values())))
     return DistributedResult(Path(out), shards, kept, failed)
-
 
 
 @wraps(inference.fit)
@@ -416,8 +397,7 @@ def _cluster_threads(client: Client) -> int:
     """Threads of all workers."""
     # No worker's own error can come of this one, so any error is one of the connection.
     with _connected(OSError):
-        known: Any = client.nthreads()
-    return sum(known.values())
+        return sum(client.nthreads().values())
 
 
 def _batches(work: tuple[str, str], client: Client) -> Callable[[Batches], Callable[[float], Any]]:

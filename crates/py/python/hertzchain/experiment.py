@@ -6,7 +6,7 @@ import json
 import os
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 from . import _hertzchain as _native
@@ -16,23 +16,9 @@ from .errors import ExperimentWarning, OptionError, existing, findings
 from .results import Description, Group, LawInfo, Row
 
 __all__ = [
-    "Beads",
-    "Contacts",
-    "Experiment",
-    "FarEnd",
-    "Law",
-    "Material",
-    "PowerOfSpeed",
-    "Striker",
-    "build",
-    "check",
-    "laws",
-    "load",
-    "preset",
-    "presets",
-    "schema",
-    "theory",
-]
+    "Beads", "Contacts", "Experiment", "FarEnd", "Law", "Material", "PowerOfSpeed", "Striker", "build",
+    "check", "laws", "load", "preset", "presets", "schema", "theory",
+]  # fmt: skip
 
 Quantity = float | str
 
@@ -55,10 +41,6 @@ class PowerOfSpeed:
     exponent: float
 
 
-def _si(unit: str) -> dict[str, str]:
-    return {"unit": unit}
-
-
 @dataclass(frozen=True)
 class Material:
     """What beads are made of. Numbers are in SI, texts have units of their own.
@@ -75,11 +57,11 @@ class Material:
         η₁ and η₂ in Pa s; η₂ is η₁ where it is left out.
     """
 
-    young_modulus: Quantity | PowerOfSpeed = field(metadata=_si("Pa"))
-    poisson_ratio: Quantity | PowerOfSpeed = field(metadata=_si("1"))
-    density: Quantity | None = field(default=None, metadata=_si("kg/m^3"))
-    shear_viscosity: Quantity | PowerOfSpeed | None = field(default=None, metadata=_si("Pa s"))
-    bulk_viscosity: Quantity | PowerOfSpeed | None = field(default=None, metadata=_si("Pa s"))
+    young_modulus: Quantity | PowerOfSpeed
+    poisson_ratio: Quantity | PowerOfSpeed
+    density: Quantity | None = None
+    shear_viscosity: Quantity | PowerOfSpeed | None = None
+    bulk_viscosity: Quantity | PowerOfSpeed | None = None
 
 
 @dataclass(frozen=True)
@@ -98,18 +80,16 @@ class Beads:
         In kg; by the density when absent.
     """
 
-    count: int = field(metadata=_si(""))
-    radius: Quantity = field(metadata=_si("m"))
-    material: str = field(metadata=_si(""))
-    mass: Quantity | None = field(default=None, metadata=_si("kg"))
+    count: int
+    radius: Quantity
+    material: str
+    mass: Quantity | None = None
 
 
 class Law:
     """A contact law by its name, with its parameters in SI or as texts.
 
-    ``hertzchain.laws()`` lists names, equations, parameters and units.
-
-    Each law's own: `hertzchain.laws`; docs/explanation/physics.md.
+    Names, equations, parameters and units: `hertzchain.laws`; docs/explanation/physics.md.
 
     Parameters
     ----------
@@ -132,22 +112,12 @@ class Law:
         given = "".join(f", {name}={value!r}" for name, value in self.parameters.items())
         return f"Law({self.name!r}{given})"
 
-    def table(self) -> str | dict[str, object]:
-        """As it stands in an experiment file.
-
-        Returns
-        -------
-        str or dict
-            Text or table of TOML.
-        """
+    def _table(self) -> str | dict[str, object]:
         if not self.parameters:
             return self.name
         units = {known["name"]: known["unit"] for known in _native.laws(self.name)[0]["parameters"]}
-        given = {
-            name: _quantity(value, units.get(name, "1").format(**self.parameters))
-            for name, value in self.parameters.items()
-        }
-        return {"law": self.name, **given}
+        given = self.parameters.items()
+        return {"law": self.name, **{name: _quantity(value, units.get(name, "1").format(**self.parameters)) for name, value in given}}
 
 
 @dataclass(frozen=True)
@@ -172,19 +142,6 @@ class Contacts:
     material: str | None = None
     wet: bool | None = None
 
-    def table(self) -> dict[str, object]:
-        """As it stands in an experiment file.
-
-        Returns
-        -------
-        str or dict
-            Text or table of TOML.
-        """
-        laws = [law.table() if isinstance(law, Law) else law for law in self.laws]
-        rest = {"to": self.to, "material": self.material, "wet": self.wet}
-        given = {key: value for key, value in rest.items() if value is not None}
-        return {"from": self.from_, **given, "laws": laws}
-
 
 @dataclass(frozen=True)
 class Striker:
@@ -200,10 +157,10 @@ class Striker:
         Name of a material.
     """
 
-    speed: Quantity = field(metadata=_si("m/s"))
-    radius: Quantity | None = field(default=None, metadata=_si("m"))
-    mass: Quantity | None = field(default=None, metadata=_si("kg"))
-    material: str | None = field(default=None, metadata=_si(""))
+    speed: Quantity
+    radius: Quantity | None = None
+    mass: Quantity | None = None
+    material: str | None = None
 
 
 @dataclass(frozen=True)
@@ -220,16 +177,20 @@ class FarEnd:
         Name of a material.
     """
 
-    kind: str = field(default="half-bead", metadata=_si(""))
-    radius: Quantity | None = field(default=None, metadata=_si("m"))
-    mass: Quantity | None = field(default=None, metadata=_si("kg"))
-    material: str | None = field(default=None, metadata=_si(""))
+    kind: str = "half-bead"
+    radius: Quantity | None = None
+    mass: Quantity | None = None
+    material: str | None = None
 
 
-Part = Material | Beads | Striker | FarEnd
+_UNITS = {
+    "young_modulus": "Pa", "poisson_ratio": "1", "density": "kg/m^3", "shear_viscosity": "Pa s", "bulk_viscosity": "Pa s",
+    "radius": "m", "mass": "kg", "speed": "m/s",
+}  # fmt: skip
 
 
 def _quantity(value: object, unit: str) -> object:
+    """A number in SI as text with its unit; anything else as it is."""
     if isinstance(value, PowerOfSpeed):
         return {"prefactor": _quantity(value.prefactor, unit), "exponent": value.exponent}
     if isinstance(value, str) or unit == "":
@@ -239,11 +200,13 @@ def _quantity(value: object, unit: str) -> object:
 
 
 def _part(part: object) -> object:
-    if isinstance(part, (Contacts, Law)):
-        return part.table()
-    if isinstance(part, (Material, Beads, Striker, FarEnd)):
-        named = ((spec.name, spec.metadata["unit"], getattr(part, spec.name)) for spec in fields(part))
-        return {name: _quantity(value, unit) for name, unit, value in named if value is not None}
+    """A value, a table or a list as it stands in an experiment file."""
+    if isinstance(part, Law):
+        return part._table()
+    if isinstance(part, (Material, Beads, Contacts, Striker, FarEnd)):
+        # A keyword of Python has an underscore behind it.
+        named = {one.name.rstrip("_"): getattr(part, one.name) for one in fields(part)}
+        return {name: _quantity(_part(value), _UNITS.get(name, "")) for name, value in named.items() if value is not None}
     if isinstance(part, Mapping):
         return {key: _part(value) for key, value in part.items()}
     if isinstance(part, Sequence) and not isinstance(part, str):
@@ -268,10 +231,8 @@ def load(path: str | os.PathLike[str]) -> Experiment:
     ------
     ExperimentError
         Every mistake in the file at once, each with its line, underlined.
-    MissingFileError
-        A file that is not there.
-    OptionError
-        A file that can't be read.
+    MissingFileError, OptionError
+        A file that is not there, or can't be read.
     """
     return Experiment.open(existing(path))
 
@@ -333,9 +294,8 @@ def schema() -> str:
 def build(tables: Mapping[str, object] | str | None = None, /, name: str = "python", **more: object) -> Experiment:
     """Builds an experiment from a dict, from keywords, or from the text of a file.
 
-    Keys are those of an experiment file. In a plain dict, as in a file, a
-    quantity is a text with a unit; in `Material`, `Beads`, `Law`, `Striker` and
-    `FarEnd` a number is in SI.
+    Keys are those of an experiment file. In a plain dict, as in a file, a quantity is a text with a
+    unit; in `Material`, `Beads`, `Law`, `Striker` and `FarEnd` a number is in SI.
 
     Parameters
     ----------
@@ -353,10 +313,8 @@ def build(tables: Mapping[str, object] | str | None = None, /, name: str = "pyth
 
     Raises
     ------
-    ExperimentError
-        Every mistake, at its line of the text that was made of the dict.
-    OptionError
-        Values that no experiment can hold.
+    ExperimentError, OptionError
+        Every mistake, at its line of the text that was made of the dict; values that no experiment can hold.
 
     Examples
     --------
@@ -378,6 +336,7 @@ def build(tables: Mapping[str, object] | str | None = None, /, name: str = "pyth
     return Experiment.from_tables(name, json.dumps(options.plain(whole)))
 
 
+@options.with_options(None)
 def check(experiment: Experiment | options.Path_, speed: float | str | None = None) -> Description:
     """Describes an experiment in SI with what follows from it; runs nothing.
 
@@ -385,10 +344,6 @@ def check(experiment: Experiment | options.Path_, speed: float | str | None = No
 
     Parameters
     ----------
-    experiment : Experiment or str or path
-        The chain and its striker; or the name of a preset, or a file.
-    speed : float or str, optional
-        Speed of the striker in m/s, or a text with a unit; the experiment's own when absent.
 
     Returns
     -------
@@ -397,10 +352,8 @@ def check(experiment: Experiment | options.Path_, speed: float | str | None = No
 
     Raises
     ------
-    ExperimentError
-        What the physics rejects, at its place in the experiment.
-    OptionError
-        A text that is no speed.
+    ExperimentError, OptionError
+        What the physics rejects, at its place in the experiment; a text that is no speed.
 
     Warns
     -----
@@ -410,6 +363,7 @@ def check(experiment: Experiment | options.Path_, speed: float | str | None = No
     return _description(_native.check(opened(experiment), options.text("check", {}, speed=speed)))
 
 
+@options.with_options(None)
 def theory(experiment: Experiment | options.Path_, speed: float | str | None = None) -> Description:
     """Theory of a chain: exact solitary wave, normal modes, band gap, restitution.
 
@@ -418,8 +372,6 @@ def theory(experiment: Experiment | options.Path_, speed: float | str | None = N
 
     Parameters
     ----------
-    experiment, speed
-        As for `check`.
 
     Returns
     -------

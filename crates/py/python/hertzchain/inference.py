@@ -23,13 +23,10 @@ if TYPE_CHECKING:
 
     from ._keywords import DesignOptions, FitOptions, GaugeOptions
 
-__all__ = ["Data", "design", "fit", "gauge"]
-
-Data = "str | os.PathLike[str] | Mapping[str, Any] | MeasureResult | Sweep | pd.DataFrame"
-"""A table of times of flight against speed: a CSV file, columns by name, or a result."""
+__all__ = ["design", "fit", "gauge"]
 
 
-@options.with_options("fit")
+@options.with_options("fit", "curves of the model (of recordings: signals of single shots)")
 def fit(
     data: Any,
     model: Experiment | options.Path_ | None = None,
@@ -50,16 +47,14 @@ def fit(
     ----------
     data : path, mapping of columns, DataFrame, MeasureResult or Sweep; or paths of recordings
         Times of flight in s against ``speed_m_s``, errors in ``*_error`` columns: a table. NaN, or
-        masked, is missing.
-        Or recordings of any format that `measure` reads, files or folders of them: then
-        whole pulses are fitted, sample by sample.
+        masked, is missing. Or recordings of any format that `measure` reads, files or folders of
+        them: then whole pulses are fitted, sample by sample.
     model : Experiment or str or path, optional
         The model, the name of a preset, or a file. Where it is absent the paper's dry chain is assumed
         (preset ``"dry"``), with a warning.
     free : str or iterable of str
-        Free numbers: short names (Y, nu, eta, K, A, B, of a material or section
-        as in ``"wet.K"``) or paths; ``:power`` for a power law of speed, ``:each``
-        for one value a speed.
+        Free numbers: short names (Y, nu, eta, K, A, B, of a material or section as in ``"wet.K"``)
+        or paths; ``:power`` for a power law of speed, ``:each`` for one value a speed.
     folder : path, optional
         Where residuals so far and a posterior's walkers are kept. The same call with the same folder
         resumes an interrupted one, and returns the same bits; walkers stay there, to
@@ -69,9 +64,6 @@ def fit(
         bits; ``folder`` is seen by all workers under this name. ``against`` is not available.
     points : int, optional
         Most points of a batch of a cluster; smaller ones where not every thread would have one.
-    progress : bool, bar or function, optional
-        True draws tqdm's bar; a bar's ``update``, or a function, is called with the number of curves of
-        the model since the last time (of recordings: signals of single shots).
     **options
         Mappings have numbers in SI, or texts with a unit, by name; ``bounds`` and ``prior`` have pairs:
         least and largest value, mean and standard deviation; ``against`` has the names that are free
@@ -85,10 +77,8 @@ def fit(
 
     Raises
     ------
-    OptionError
-        Names, tables and options that do not fit, and what prevents a fit.
-    ExperimentError
-        Mistakes in the model.
+    OptionError, ExperimentError
+        Names, tables and options that do not fit, and what prevents a fit; mistakes in the model.
     ConnectionError
         The cluster's scheduler is gone: the same call resumes.
 
@@ -124,7 +114,7 @@ def fit_result(found: dict[str, Any]) -> FitResult:
     rows, samples = found.pop("rows"), found.pop("samples", None)
     texts = ("observable", "source", "channel")
     return FitResult(
-        parameters={raw["name"]: Parameter(**raw) for raw in found["parameters"]},
+        parameters={raw["name"]: Parameter(raw) for raw in found["parameters"]},
         covariance=np.array(found["covariance"], dtype=float),
         correlation=np.array(found["correlation"], dtype=float),
         rows={key: np.array([row[key] for row in rows], dtype=None if key in texts else float) for key in (rows[0] if rows else ())},
@@ -133,7 +123,7 @@ def fit_result(found: dict[str, Any]) -> FitResult:
     )
 
 
-@options.with_options("design")
+@options.with_options("design", "curves of the model")
 def design(
     data: Any,
     model: Experiment | options.Path_ | None = None,
@@ -148,7 +138,7 @@ def design(
 
     Parameters
     ----------
-    data, model, free, progress
+    data, model, free
         As for `fit` of a table.
     **options
         Speeds in m/s, pushes in N or with a unit.
@@ -170,7 +160,7 @@ def design(
     return DesignResult(found | {"parameter_units": found["units"]})
 
 
-@options.with_options("gauge")
+@options.with_options("gauge", "curves of the model")
 def gauge(
     wet: Any,
     dry: Any,
@@ -195,9 +185,6 @@ def gauge(
         paper's is assumed (presets ``"pump"`` and ``"dry"``), with a warning.
     oils : path, optional
         Table (CSV) of further oils.
-    progress
-        As for `fit`.
-    **options
 
     Returns
     -------

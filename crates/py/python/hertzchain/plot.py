@@ -7,7 +7,6 @@ a new figure in the style of this package, `STYLE`, which is there for other fig
         ...
 """
 
-
 from __future__ import annotations
 
 import warnings
@@ -26,19 +25,13 @@ from matplotlib.colors import to_hex
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 from numpy.typing import NDArray
 
+from ._options import with_options
 from .errors import ExperimentWarning
 from .results import Case, FitResult, Floats, PowerLaw, Shot, Sweep, Trace
 
 __all__ = [
-    "STYLE",
-    "corner",
-    "fit",
-    "ratios",
-    "signals",
-    "space_time",
-    "style",
-    "times_of_flight",
-]
+    "STYLE", "corner", "fit", "ratios", "signals", "space_time", "style", "times_of_flight",
+]  # fmt: skip
 
 Given = ParamSpec("Given")
 Drawn = TypeVar("Drawn")
@@ -70,6 +63,7 @@ def style() -> AbstractContextManager[None]:
 def styled(draw: Callable[Given, Drawn]) -> Callable[Given, Drawn]:
     """In the package's style, unless it draws into given axes."""
 
+    @with_options(None)
     @wraps(draw)
     def within(*args: Given.args, **kwargs: Given.kwargs) -> Drawn:
         given = signature(draw).bind(*args, **kwargs).arguments
@@ -107,8 +101,6 @@ def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes |
         With sampled sensors: ``hertzchain.shot(..., trace=True)``.
     sensors : sequence of str, optional
         Which; all forces when absent.
-    ax : Axes, optional
-        To draw into; a new figure's when absent.
 
     Returns
     -------
@@ -161,8 +153,6 @@ def space_time(shot: Shot | Trace, kind: str = "contact", ax: Axes | None = None
         With several sensors of the kind: ``trace=[f"contact_{i}" for i in range(41)]``.
     kind : {"contact", "velocity", "position", "bead"}
         Which signals.
-    ax : Axes, optional
-        To draw into; a new figure's when absent.
 
     Returns
     -------
@@ -182,19 +172,10 @@ def space_time(shot: Shot | Trace, kind: str = "contact", ax: Axes | None = None
     scale, unit = time_scale(trace.dimensionless)
     signed = bool(values.min() < -0.05 * values.max())
     most = float(np.abs(values).max())
-    mesh = ax.pcolormesh(
-        scale * trace.time_s,
-        numbers,
-        values,
-        shading="nearest",
-        rasterized=True,
-        cmap="RdBu_r" if signed else None,
-        vmin=-most if signed else 0.0,
-        vmax=most,
-    )
+    colours: dict[str, Any] = {"cmap": "RdBu_r", "vmin": -most} if signed else {"vmin": 0.0}
+    mesh = ax.pcolormesh(scale * trace.time_s, numbers, values, shading="nearest", rasterized=True, vmax=most, **colours)
     ax.grid(False)
-    ax.set_xlabel(f"Time{unit}")
-    ax.set_ylabel("Contact" if kind == "contact" else "Bead")
+    ax.set(xlabel=f"Time{unit}", ylabel="Contact" if kind == "contact" else "Bead")
     of = trace.unit(f"{kind}_0")
     name = {"contact": "Force", "bead": "Force", "velocity": "Velocity", "position": "Displacement"}[kind]
     figure = ax.get_figure()
@@ -207,22 +188,16 @@ Curve = Sweep | Case
 """A computed curve, or a measured one."""
 
 
-def columns_of(curve: Curve) -> Mapping[str, Floats]:
-    return curve.columns | {"speed_m_s": curve.speed_m_s} if isinstance(curve, Sweep) else curve.columns
-
-
 def _points(ax: Axes, curve: Curve, column: str, factor: float, **look: Any) -> None:
     """A line of computed numbers, or measured ones with their errors."""
-    columns = columns_of(curve)
+    columns = curve._columns()
     speeds, values = columns["speed_m_s"], factor * columns[column]
     if isinstance(curve, Sweep):
         look.pop("marker", None)
         ax.plot(speeds, values, **look)
         return
-    look.pop("linestyle", None)
-    ax.errorbar(
-        speeds, values, factor * columns[f"{column}_error"], columns["speed_error_m_s"], linestyle="none", elinewidth=0.6, **look
-    )
+    look |= {"linestyle": "none", "elinewidth": 0.6}
+    ax.errorbar(speeds, values, factor * columns[f"{column}_error"], columns["speed_error_m_s"], **look)
 
 
 @styled
@@ -242,8 +217,6 @@ def times_of_flight(
         Draw the power laws beside them.
     logarithmic : bool
         Both axes logarithmic.
-    ax : Axes, optional
-        To draw into; a new figure's when absent.
 
     Returns
     -------
@@ -267,25 +240,16 @@ def times_of_flight(
             _points(ax, curve, column, scale, color=colour, linestyle=dashes, marker=MARKERS[at % 5], markerfacecolor=face, label=label)
             law: PowerLaw | None = getattr(curve, f"power_law_{end}")
             if laws and law is not None:
-                speeds = np.geomspace(*_ends(columns_of(curve)["speed_m_s"]), 50)
+                known = curve._columns()["speed_m_s"]
+                speeds = np.geomspace(np.min(known), np.max(known), 50)
                 ax.plot(speeds, scale * law(speeds), color="0.6", linewidth=0.7, zorder=1)
-    ax.set_xlabel("Speed of the striker" if dimensionless else "Speed of the striker (m/s)")
-    ax.set_ylabel(f"Time of flight{unit}")
+    ax.set(xlabel="Speed of the striker" if dimensionless else "Speed of the striker (m/s)", ylabel=f"Time of flight{unit}")
     if logarithmic:
-        _log_axes(ax)
+        ax.set(xscale="log", yscale="log")
+        for axis in (ax.xaxis, ax.yaxis):
+            plain_ticks(axis, (1.0, 2.0, 3.0, 5.0, 7.0))
     ax.legend()
     return ax
-
-
-def _ends(values: Floats) -> tuple[float, float]:
-    return float(np.min(values)), float(np.max(values))
-
-
-def _log_axes(ax: Axes) -> None:
-    """Logarithmic axes with plain numbers."""
-    ax.set(xscale="log", yscale="log")
-    for axis in (ax.xaxis, ax.yaxis):
-        plain_ticks(axis, (1.0, 2.0, 3.0, 5.0, 7.0))
 
 
 def plain_ticks(axis: Axis, steps: Sequence[float]) -> None:
@@ -330,8 +294,6 @@ def ratios(
         Whose times of flight.
     markers : mapping of str to str, optional
         By name of the oil.
-    ax : Axes, optional
-        To draw into; a new figure's when absent.
 
     Returns
     -------
@@ -350,11 +312,11 @@ def ratios(
     """
     ax = on_axes(ax)
     column = f"tof_{end}_s"
-    reference = columns_of(dry)
+    reference = dry._columns()
     order = np.argsort(reference["speed_m_s"])
     known = np.log(reference["speed_m_s"][order]), np.log(reference[column][order])
     for at, (name, curve) in enumerate(wet.items()):
-        columns = columns_of(curve)
+        columns = curve._columns()
         speeds = columns["speed_m_s"]
         times = _continued(np.log(speeds), *known)
         if beyond := int(np.isinf(times).sum()):
@@ -364,8 +326,7 @@ def ratios(
         marker = (markers or {}).get(name, MARKERS[at % 5])
         ax.plot(speeds, ratio, marker=marker, color=colour_of(at), label=name)
     ax.axhline(1.0, color="0.3", linewidth=0.6)
-    ax.set_xlabel("Speed of the striker (m/s)")
-    ax.set_ylabel(f"{end.capitalize()} ToF, wet / dry")
+    ax.set(xlabel="Speed of the striker (m/s)", ylabel=f"{end.capitalize()} ToF, wet / dry")
     ax.legend()
     return ax
 
@@ -399,8 +360,7 @@ def fit(fitted: FitResult, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
         Axes that are not two.
     """
     if axes is None:
-        sizes = {"height_ratios": (2.2, 1)}
-        axes = plt.subplots(2, 1, figsize=(COLUMN, 3.6), sharex=True, gridspec_kw=sizes)[1]
+        axes = plt.subplots(2, 1, figsize=(COLUMN, 3.6), sharex=True, height_ratios=(2.2, 1))[1]
     upper, lower = made = np.asarray(axes).ravel()
     upper.xaxis.set_tick_params(which="both", labelbottom=False)
     lower.axhline(0.0, color="0.3", linewidth=0.6)
@@ -480,24 +440,27 @@ def corner(fitted: FitResult, bins: int = 40, axes: NDArray[Any] | None = None) 
         side = max(COLUMN, 1.5 * count)
         axes = plt.subplots(count, count, figsize=(side, side), squeeze=False)[1]
     made = np.asarray(axes).reshape(count, count)
-    for row in range(count):
-        for column in range(count):
-            ax = made[row, column]
-            if column > row:
-                ax.axis("off")
-            elif column == row:
-                _marginal(ax, fitted, row, bins)
-            else:
-                _pair(ax, fitted, (column, row), bins)
-            _corner_labels(ax, fitted, (row, column), count)
+    for row, column in np.ndindex(count, count):
+        ax = made[row, column]
+        if column > row:
+            ax.axis("off")
+        elif column == row:
+            _marginal(ax, fitted, row, bins)
+        else:
+            _pair(ax, fitted, (column, row), bins)
+        _corner_labels(ax, fitted, (row, column), count)
     return made
+
+
+def _normal(fitted: FitResult, at: int) -> tuple[float, float]:
+    """Best fit and standard deviation of a parameter by the covariance."""
+    return list(fitted.parameters.values())[at].value, float(np.sqrt(fitted.covariance[at, at]))
 
 
 def _range(fitted: FitResult, at: int) -> tuple[float, float]:
     """What is shown of a parameter: four standard errors, or where its samples are."""
-    best = list(fitted.parameters.values())[at].value
-    spread = float(np.sqrt(fitted.covariance[at, at]))
     if fitted.samples is None:
+        best, spread = _normal(fitted, at)
         return best - 4 * spread, best + 4 * spread
     low, high = np.quantile(fitted.samples[:, at], (0.001, 0.999))
     return float(low), float(high)
@@ -505,8 +468,7 @@ def _range(fitted: FitResult, at: int) -> tuple[float, float]:
 
 def _marginal(ax: Axes, fitted: FitResult, at: int, bins: int) -> None:
     low, high = _range(fitted, at)
-    best = list(fitted.parameters.values())[at].value
-    spread = float(np.sqrt(fitted.covariance[at, at]))
+    best, spread = _normal(fitted, at)
     grid = np.linspace(low, high, 200)
     normal = np.exp(-0.5 * ((grid - best) / spread) ** 2) / (spread * np.sqrt(2 * np.pi))
     if fitted.samples is not None:
@@ -519,7 +481,7 @@ def _marginal(ax: Axes, fitted: FitResult, at: int, bins: int) -> None:
 
 def _pair(ax: Axes, fitted: FitResult, pair: tuple[int, int], bins: int) -> None:
     ranges = [_range(fitted, at) for at in pair]
-    centre = [list(fitted.parameters.values())[at].value for at in pair]
+    centre = [_normal(fitted, at)[0] for at in pair]
     if fitted.samples is not None:
         cells, x, y = np.histogram2d(fitted.samples[:, pair[0]], fitted.samples[:, pair[1]], bins=bins, range=ranges)
         ax.pcolormesh(x, y, cells.T, cmap="Blues", rasterized=True)

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 import warnings as _warnings
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from shutil import rmtree
-from tempfile import mkdtemp
-from threading import Thread
+from tempfile import TemporaryDirectory
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["campaign", "measure"]
 
 
+@options.with_options(None)
 def campaign(
     experiment: Experiment | options.Path_,
     out: options.Path_,
@@ -54,8 +53,6 @@ def campaign(
         Only the i-th of n parts, as ``"i/n"``: every n-th series.
     seed : int, optional
         In place of the experiment's.
-    threads, progress
-        As for `sweep`; progress counts shots.
 
     Returns
     -------
@@ -64,25 +61,23 @@ def campaign(
 
     Raises
     ------
-    OptionError, ExperimentError
-        An experiment that no rig can do, a folder with something else in it.
-    InternalError
-        A recording that can't be written.
+    OptionError, ExperimentError, InternalError
+        An experiment that no rig can do, a folder with something else in it, a recording that can't be written.
 
     Warns
     -----
     ExperimentWarning
         A record that ends before the wave is back, a rate of few samples a pulse.
     """
-    how = {"out": out, "shard": shard, "seed": seed, "threads": threads}
+    how = options.text("campaign", {}, out=out, shard=shard, seed=seed, threads=threads)
     with options.progress(progress, None, "shot") as update:
-        done = _native.campaign(opened(experiment), options.text("campaign", {}, **how), update)
+        done = _native.campaign(opened(experiment), how, update)
     for text in done.pop("warnings"):
         _warnings.warn(text, ExperimentWarning, stacklevel=2)
     return CampaignResult(Path(out), done)
 
 
-@options.with_options("measure")
+@options.with_options("measure", "records")
 def measure(
     records: options.Path_ | Iterable[options.Path_] | NDArray[Any],
     *,
@@ -100,9 +95,6 @@ def measure(
         Files (HDF5 of a campaign, text, NPY, NPZ, WAV, TDMS) or folders of them;
         or volts as an array of shape (samples,) or (shots, samples), with ``rate``;
         ``rows`` states what else rows of an array are.
-    threads, progress
-        As for `sweep`; progress counts records.
-    **options
 
     Returns
     -------
@@ -124,8 +116,8 @@ def measure(
         # The shape of an array of many short shots would mislead.
         how["rows"] = "shots"
     asked = options.text("measure", how)
-    with _folder() as folder, options.progress(progress, None, "record") as update:
-        found = _native.measure(_files(records, folder), asked, options.count("threads", threads), update)
+    with TemporaryDirectory(prefix="hertzchain-", ignore_cleanup_errors=True) as folder, options.progress(progress, None, "record") as update:
+        found = _native.measure(_files(records, Path(folder)), asked, options.count("threads", threads), update)
     if found["verdict"] is not None:
         refused = "".join(f"\n{why}" for why in found["refused"][:3])
         _warnings.warn(in_python(found["verdict"] + refused), ExperimentWarning, stacklevel=2)
@@ -133,42 +125,19 @@ def measure(
     return MeasureResult({case.name: case for case in cases}, tables, found)
 
 
-@contextmanager
-def _folder() -> Iterator[Path]:
-    """A folder for arrays, removed in the background: of a gigabyte that takes a tenth of a second."""
-    folder = mkdtemp(prefix="hertzchain-")
-    try:
-        yield Path(folder)
-    finally:
-        Thread(target=rmtree, args=(folder, True)).start()
-
-
 def _files(records: options.Path_ | Iterable[options.Path_] | NDArray[Any], folder: Path) -> list[str]:
     if isinstance(records, np.ndarray):
         if records.dtype.kind not in "fiu" or records.ndim not in (1, 2) or records.size == 0:
             raise OptionError(f"records of {records.dtype} and shape {records.shape}: expected volts of shape (samples,) or (shots, samples)")
-        return [_saved(records, folder / "array.npy")]
+        path = folder / "array.npy"
+        with open(path, "wb") as file:
+            # Into anything but a file NumPy writes pieces, between which Ctrl-C works.
+            pieces: Any = SimpleNamespace(write=file.write)
+            np.save(pieces, np.ascontiguousarray(records))
+        return [str(path)]
     if isinstance(records, (str, os.PathLike)):
         return [existing(records)]
     return [existing(record) for record in records]
-
-
-PIECE = 1 << 20
-"""Samples written at once: Ctrl-C works between two pieces."""
-
-
-def _saved(records: NDArray[Any], path: Path) -> str:
-    """Writes an array of any layout as a file of NumPy."""
-    header = {"descr": np.lib.format.dtype_to_descr(records.dtype), "fortran_order": False, "shape": records.shape}
-    table = records.reshape(1, -1) if records.ndim == 1 else records
-    rows, columns = table.shape
-    together = max(1, PIECE // columns)
-    with open(path, "wb") as file:
-        np.lib.format.write_array_header_1_0(file, header)
-        for first in range(0, rows, together):
-            for left in range(0, columns, PIECE):
-                file.write(table[first : first + together, left : left + PIECE].tobytes())
-    return str(path)
 
 
 def _case(raw: Mapping[str, Any]) -> Case:

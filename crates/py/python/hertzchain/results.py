@@ -6,9 +6,10 @@ import csv
 import io
 import json
 import os
+import re
 import warnings as _warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -22,39 +23,23 @@ if TYPE_CHECKING:
     import xarray as xr
 
 __all__ = [
-    "CampaignResult",
-    "Case",
-    "Description",
-    "DesignResult",
-    "Ensemble",
-    "FitResult",
-    "GaugeResult",
-    "Group",
-    "LawInfo",
-    "MeasureResult",
-    "Parameter",
-    "PowerLaw",
-    "Result",
-    "Row",
-    "Shot",
-    "Sweep",
-    "Trace",
+    "CampaignResult", "Case", "Description", "DesignResult", "Ensemble", "FitResult", "GaugeResult", "Group",
+    "LawInfo", "MeasureResult", "Parameter", "PowerLaw", "Result", "Row", "Shot", "Sweep", "Trace",
     "WarningSummary",
-]
+]  # fmt: skip
 
 Floats = NDArray[np.float64]
 Variable = tuple[tuple[str, ...], Any]
 """Names of dimensions, and values."""
 
-_ENDINGS = {"_beads_per_s": "beads/s", "_m_s": "m/s", "_s": "s", "_n": "N", "_j": "J", "_m": "m", "_v": "V"}
+_ENDINGS = {"_beads_per_s": "beads/s", "_m_s": "m/s", "_s": "s", "_n": "N", "_j": "J", "_m": "m", "_v": "V", "_nats": "nat", "bytes": "B"}
 
 
 def unit(name: str, dimensionless: bool = False) -> str:
     """SI unit of a column by the end of its name, of its uncertainty too; "1" for plain numbers."""
     if dimensionless:
         return "1"
-    for suffix in ("_sigma", "_error", "_deviation", "_err", "_std"):
-        name = name.replace("_sigma", "").removesuffix(suffix)
+    name = re.sub("_sigma|_(error|deviation|err|std)$", "", name)
     return next((unit for ending, unit in _ENDINGS.items() if name.endswith(ending)), "1")
 
 
@@ -64,10 +49,13 @@ class Result:
     _index: ClassVar[str | None] = None
     _dimension: ClassVar[str] = "row"
     _fields: ClassVar[tuple[str, ...]] = ()
+    _rows: ClassVar[str | None] = None
     _printed: ClassVar[tuple[str, ...]] = ()
 
     def _columns(self) -> Mapping[str, Sequence[Any] | NDArray[Any]]:
-        """The table: columns of one length; by default one row of the fields."""
+        """The table: columns of one length; by default the fields of the rows, or of this as one row."""
+        if self._rows is not None:
+            return {name: [row.get(name) for row in getattr(self, self._rows)] for name in self._fields}
         return {name: [_cell(getattr(self, name))] for name in self._fields}
 
     def _variables(self) -> Mapping[str, Variable]:
@@ -76,7 +64,8 @@ class Result:
         return {name: ((of,), _array(values)) for name, values in self._columns().items()}
 
     def _coordinates(self) -> tuple[str, ...]:
-        return () if self._index is None else (self._index,)
+        """Coordinates beside those that xarray knows as such: variables with the name of a dimension."""
+        return ()
 
     def _units(self) -> Mapping[str, Any]:
         """Units of columns and variables whose names do not end in theirs."""
@@ -148,25 +137,27 @@ class Result:
             path.write_text(csv_text(self._columns()), encoding="utf-8")
         return [path]
 
+    def __getitem__(self, name: str) -> Any:
+        # Columns of an ensemble have its shape; in its table they are flat.
+        columns = self.__dict__.get("columns", {})
+        return columns[name] if name in columns else self._columns()[name]
+
     def __getattr__(self, name: str) -> Any:
-        # Keys of the program's JSON that have no attribute of their own.
-        try:
-            return self.__dict__["details"][name]
-        except KeyError:
-            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}") from None
+        # Keys of the program's JSON, and columns, that have no attribute of their own.
+        for held in ("details", "columns"):
+            if name in (own := self.__dict__.get(held, ())):
+                return own[name]
+        raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
 
     def __repr__(self) -> str:
         title, rows = self._summary()
         width = max((len(name) for name in rows), default=0)
         return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items()), *self._lines()])
 
-    def _shown(self) -> Sequence[str]:
-        return self._printed
-
     def _lines(self, most: int = 10) -> list[str]:
         """The first rows of the printed columns, right-aligned under their names."""
         columns = self._columns()
-        shown = [name for name in self._shown() if name in columns]
+        shown = [name for name in (*self._coordinates(), *self._printed) if name in columns]
         count = len(columns[shown[0]]) if shown else 0
         cells = [[name, *(str(short(one, 7) if isinstance(one, float) else one) for one in columns[name][:most])] for name in shown]
         widths = [max(map(len, column)) for column in cells]
@@ -249,9 +240,6 @@ class Trace(Result):
         if self.dimensionless:
             return "1"
         return {"position": "m", "velocity": "m/s"}.get(sensor.split("_")[0], "N")
-
-    def __getitem__(self, sensor: str) -> Floats:
-        return self.signals[sensor]
 
     def stacked(self, kind: str) -> tuple[NDArray[Any], Floats]:
         """Signals of all sensors of a kind as one array.
@@ -350,9 +338,6 @@ class Shot(Result):
     def _variables(self) -> Mapping[str, Variable]:
         return {} if self.trace is None else self.trace._variables()
 
-    def _coordinates(self) -> tuple[str, ...]:
-        return () if self.trace is None else self.trace._coordinates()
-
     def _units(self) -> dict[str, str]:
         return {} if self.trace is None else self.trace._units()
 
@@ -404,21 +389,15 @@ class PowerLaw(Result):
         Coefficient of determination.
     residuals : list of float
         Relative differences of the times from the law, speed by speed.
+    details : dict
+        All of these.
     dimensionless : bool
         Whether K = m = 1 stands for SI.
     """
 
     _fields = ("prefactor_s", "prefactor_error_s", "prefactor_accuracy_s", "exponent", "exponent_error", "exponent_accuracy", "r_squared")
 
-    prefactor_s: float
-    exponent: float
-    prefactor_error_s: float | None
-    exponent_error: float | None
-    prefactor_accuracy_s: float | None
-    exponent_accuracy: float | None
-    covariance: Any
-    r_squared: float | None
-    residuals: list[float] = field(default_factory=list[float])
+    details: dict[str, Any]
     dimensionless: bool = False
 
     def __call__(self, speed_m_s: Any) -> Any:
@@ -437,8 +416,7 @@ def power_law(found: Mapping[str, Any], dimensionless: bool = False) -> PowerLaw
     """A power law of the program's JSON; None for fewer than two speeds."""
     if "missing" in found:
         return None
-    known: dict[str, Any] = {name: found.get(name) for name in PowerLaw.__dataclass_fields__}
-    return PowerLaw(**known | {"residuals": found.get("residuals") or [], "dimensionless": dimensionless})
+    return PowerLaw({**dict.fromkeys((*PowerLaw._fields, "covariance")), "residuals": [], **found}, dimensionless)
 
 
 class _Table(Result):
@@ -449,31 +427,15 @@ class _Table(Result):
 
     columns: dict[str, Floats]
 
-    def __getitem__(self, column: str) -> Floats:
-        return self.columns[column]
+    def _columns(self) -> Mapping[str, Floats]:
+        return self.columns
 
-
-class _Shots(_Table):
-    """Columns of many shots, those of the times of flight by name."""
-
-    @property
-    def tof_incident_s(self) -> Floats:
-        """Incident times of flight in s."""
-        return self.columns["tof_incident_s"]
-
-    @property
-    def tof_reflected_s(self) -> Floats:
-        """Reflected times of flight in s."""
-        return self.columns["tof_reflected_s"]
-
-    @property
-    def accuracy_reached(self) -> Floats:
-        """Bounds on the relative errors of times of flight; NaN without error control."""
-        return self.columns["accuracy_reached"]
+    def _attributes(self) -> Mapping[str, Any]:
+        return {"experiment": self.__dict__.get("experiment"), "case": self.__dict__.get("name")}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Sweep(_Shots):
+class Sweep(_Table):
     """Shots of one chain at several speeds. All arrays have shape (speeds,); NaN is missing.
 
     Attributes
@@ -487,10 +449,9 @@ class Sweep(_Shots):
     accuracy_reached : ndarray
         Bounds on their relative errors.
     columns : dict of str to ndarray
-        Everything: times of flight, peaks in N, widths in s, pulse speed,
-        rebound in m/s, duration in s, and time and height of the highest
-        maximum that could be the arrival instead (``competing_time_s``,
-        ``competing_peak_n``), or the reflected pulse's peak
+        Everything: times of flight, peaks in N, widths in s, pulse speed, rebound in m/s, duration
+        in s, and time and height of the highest maximum that could be the arrival instead
+        (``competing_time_s``, ``competing_peak_n``), or the reflected pulse's peak
         (``competing_reflected_*``).
     power_law_incident, power_law_reflected : PowerLaw or None
         None where fewer than two speeds have a time of flight.
@@ -521,9 +482,6 @@ class Sweep(_Shots):
 
     def _columns(self) -> dict[str, Floats]:
         return {"speed_m_s": self.speed_m_s, **self.columns}
-
-    def _attributes(self) -> dict[str, Any]:
-        return {"experiment": self.experiment}
 
     def _summary(self) -> tuple[str, dict[str, str]]:
         laws = {"incident law": self.power_law_incident, "reflected law": self.power_law_reflected}
@@ -568,30 +526,26 @@ def warn(messages: Sequence[str], shots: int) -> None:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Ensemble(_Shots):
+class Ensemble(_Table):
     """Shots over arrays of speeds and of named numbers, broadcast against each other.
 
     Attributes
     ----------
-    experiment : str
-        Its name.
+    experiment, speed_m_s, columns, dimensionless
+        As of a `Sweep`.
     shape : tuple of int
         The common shape; every column has it.
-    speed_m_s : ndarray
-        Speeds of the striker in m/s.
     parameters : dict of str to ndarray
         Named numbers in SI.
-    columns : dict of str to ndarray
-        As in `Sweep`; NaN is missing.
     errors : dict of tuple to str
         Why there is no shot, by index.
     parameter_units : dict of str to str
         SI units of the named numbers.
     warnings : WarningSummary or None
         Warnings about the chain in some shots, such as a law out of its range.
-    dimensionless : bool
-        Whether K = m = 1 stands for SI.
     """
+
+    _printed = ("tof_incident_s", "tof_reflected_s")
 
     experiment: str
     shape: tuple[int, ...]
@@ -625,15 +579,9 @@ class Ensemble(_Shots):
     def _units(self) -> dict[str, str]:
         return self.parameter_units
 
-    def _attributes(self) -> dict[str, Any]:
-        return {"experiment": self.experiment}
-
     def _summary(self) -> tuple[str, dict[str, str]]:
         rows = {"failed": str(len(self.errors))} if self.errors else {}
         return f"Ensemble of {self.experiment}, shape {self.shape}", rows | ({"warnings": str(self.warnings)} if self.warnings else {})
-
-    def _shown(self) -> Sequence[str]:
-        return (*self._inputs(), "tof_incident_s", "tof_reflected_s")
 
 
 def _varied(values: Floats) -> tuple[int, ...]:
@@ -678,9 +626,6 @@ class CampaignResult(Result):
         """The recordings, by name."""
         return sorted(self.folder.glob("*.h5"))
 
-    def _units(self) -> dict[str, str]:
-        return {"bytes": "B"}
-
     def _summary(self) -> tuple[str, dict[str, str]]:
         rows = {"series": f"{self.run} run now, {self.kept} kept", "shots": str(self.shots), "size": f"{self.bytes / 1e6:.3g} MB", "seed": str(self.seed)}
         return f"Campaign in {self.folder}", rows | {f"failed {at}": why for at, why in enumerate(self.failed, 1)}
@@ -707,12 +652,6 @@ class Case(_Table):
     columns: dict[str, Floats]
     power_law_incident: PowerLaw | None
     power_law_reflected: PowerLaw | None
-
-    def _columns(self) -> dict[str, Floats]:
-        return self.columns
-
-    def _attributes(self) -> dict[str, Any]:
-        return {"case": self.name}
 
     def _summary(self) -> tuple[str, dict[str, str]]:
         return f"Case {self.name or '(unnamed)'}, {self.columns['speed_m_s'].size} speeds", {}
@@ -808,22 +747,13 @@ class Parameter(Result):
         Where it started, its bounds, a change that matters.
     prior : dict or None
         Its prior distribution.
+    details : dict
+        All of these.
     """
 
     _fields = ("name", "unit", "value", "standard_error", "start", "lower", "upper", "scale", "determined", "at_bound")
 
-    name: str
-    unit: str
-    value: float
-    standard_error: float | None
-    determined: bool
-    at_bound: bool
-    limit: dict[str, Any] | None
-    start: float
-    lower: float | None
-    upper: float | None
-    scale: float
-    prior: dict[str, float] | None
+    details: dict[str, Any]
 
     def _units(self) -> dict[str, str]:
         return dict.fromkeys(("value", "standard_error", "start", "lower", "upper", "scale"), self.unit)
@@ -854,11 +784,10 @@ class FitResult(Result):
     covariance, correlation : ndarray, shape (parameters, parameters)
         In products of the parameters' SI units; and without units.
     rows : dict of str to ndarray, shape (values,)
-        Measured beside fitted. Of times of flight: ``speed_m_s``, ``observable``,
-        ``measured``, ``error``, ``fitted``, ``fitted_error`` (in s, ratios in 1),
-        ``residual`` in standard errors. Of whole pulses, a mean of samples each:
-        ``source``, ``channel``, ``time_s`` after the incident maximum, ``measured_v``,
-        ``error_v``, ``fitted_v``.
+        Measured beside fitted. Of times of flight: ``speed_m_s``, ``observable``, ``measured``,
+        ``error``, ``fitted``, ``fitted_error`` (in s, ratios in 1), ``residual`` in standard
+        errors. Of whole pulses, a mean of samples each: ``source``, ``channel``, ``time_s`` after
+        the incident maximum, ``measured_v``, ``error_v``, ``fitted_v``.
     samples : ndarray of shape (samples, parameters) or None
         Of the posterior in SI, if that was sampled and has converged.
     chi_square : dict or None
@@ -907,9 +836,6 @@ class FitResult(Result):
         }
         return made if self.samples is None else made | {"samples": (("sample", *over), self.samples)}
 
-    def _coordinates(self) -> tuple[str, ...]:
-        return ("parameter", "other")
-
     def _summary(self) -> tuple[str, dict[str, str]]:
         known = self.details
         rows = {name: str(parameter) for name, parameter in self.parameters.items()}
@@ -935,8 +861,7 @@ class DesignResult(Result):
     parameters, parameter_units : list of str
         The parameters to tighten, and their SI units.
     ranked : list of dict
-        One measurement more, best first: ``measure``, ``standard_errors``,
-        ``information_nats``.
+        One measurement more, best first: ``measure``, ``standard_errors``, ``information_nats``.
     series : list of dict
         A series, each the best after those before it.
     details : dict
@@ -954,7 +879,7 @@ class DesignResult(Result):
         return {"measure": [one["measure"] for one in self.ranked], **errors, "information_nats": [one["information_nats"] for one in self.ranked]}
 
     def _units(self) -> dict[str, str]:
-        return {**dict(zip(self.parameters, self.parameter_units, strict=True)), "information_nats": "nat"}
+        return dict(zip(self.parameters, self.parameter_units, strict=True))
 
     def _summary(self) -> tuple[str, dict[str, str]]:
         rows = {one["measure"]: f"{short(one['information_nats'], 3)} nats" for one in self.ranked[:5]}
@@ -985,31 +910,21 @@ class GaugeResult(Result):
         All of ``gauge.json``.
     """
 
-    details: dict[str, Any]
+    _rows = "oils"
+    _fields = ("name", "distance", "possible", "probability", "chi_square", "freedom")
 
-    def _columns(self) -> dict[str, list[Any]]:
-        names = ("name", "distance", "possible", "probability", "chi_square", "freedom")
-        return {name: [oil[name] for oil in self.oils] for name in names}
+    details: dict[str, Any]
 
     def _units(self) -> dict[str, str]:
         return {"distance": "standard error", **dict.fromkeys(("stiffness", "stiffness_error"), "N/m^1.5")}
 
     def _variables(self) -> dict[str, Variable]:
         found = [row for row in self.contacts if "missing" not in row]
-
-        def column(of: str, part: str) -> Variable:
-            return ("speed_m_s",), [number((row.get(of) or {}).get(part)) for row in found]
-
-        return {
-            "speed_m_s": (("speed_m_s",), [row["speed_m_s"] for row in found]),
-            "stiffness": column("stiffness", "value"),
-            "stiffness_error": column("stiffness", "standard_error"),
-            "relaxation_time_s": column("relaxation_time_s", "value"),
-            "relaxation_time_error_s": column("relaxation_time_s", "standard_error"),
-        }
-
-    def _coordinates(self) -> tuple[str, ...]:
-        return ("speed_m_s",)
+        made: dict[str, Variable] = {"speed_m_s": (("speed_m_s",), [row["speed_m_s"] for row in found])}
+        for of, error in (("stiffness", "stiffness_error"), ("relaxation_time_s", "relaxation_time_error_s")):
+            for name, part in ((of, "value"), (error, "standard_error")):
+                made[name] = ("speed_m_s",), [number((row.get(of) or {}).get(part)) for row in found]
+        return made
 
     def _summary(self) -> tuple[str, dict[str, str]]:
         rows = {oil["name"]: f"{short(oil['distance'], 3)} standard errors away, {'possible' if oil['possible'] else 'rejected'}" for oil in self.oils}
@@ -1051,11 +966,10 @@ def _readable(value: Any) -> str:
 
 
 class _Rows(Result):
-    def _groups(self) -> tuple[Group, ...]:
-        raise NotImplementedError
+    """Groups of rows, or one that is all of them."""
 
     def _columns(self) -> dict[str, list[Any]]:
-        rows = [(group.title, row) for group in self._groups() for row in group.rows]
+        rows = [(group.title, row) for group in getattr(self, "groups", (self,)) for row in group.rows]
         columns = {of: [getattr(row, of) for _, row in rows] for of in ("name", "value", "unit")}
         return {"group": [title for title, _ in rows], **columns}
 
@@ -1081,9 +995,6 @@ class Group(_Rows):
     def __getitem__(self, name: str) -> Row:
         return {row.name: row for row in self.rows}[name]
 
-    def _groups(self) -> tuple[Group, ...]:
-        return (self,)
-
     def _summary(self) -> tuple[str, dict[str, str]]:
         return self.title, {row.name: str(row) for row in self.rows}
 
@@ -1108,9 +1019,6 @@ class Description(_Rows):
 
     def __iter__(self) -> Iterator[Group]:
         return iter(self.groups)
-
-    def _groups(self) -> tuple[Group, ...]:
-        return self.groups
 
     def __repr__(self) -> str:
         return "\n\n".join(map(repr, self.groups))
@@ -1141,12 +1049,10 @@ class LawInfo(Result):
     """
 
     _index = "name"
+    _rows = "parameters"
+    _fields = ("name", "meaning", "unit", "default", "least", "required")
 
     details: dict[str, Any]
-
-    def _columns(self) -> dict[str, list[Any]]:
-        names = ("name", "meaning", "unit", "default", "least", "required")
-        return {name: [parameter.get(name) for parameter in self.parameters] for name in names}
 
     def _units(self) -> dict[str, str]:
         return dict.fromkeys(("default", "least"), "as in the column unit")

@@ -47,9 +47,8 @@ class ForceLaw:
         shape (contacts,): overlaps δ > 0 in m and rates δ̇ in m/s, positive
         while approaching. Must return an array of that shape.
     energy : function of (overlap_m,), optional
-        Energy in J that a contact gives back, of which ``force`` at δ̇ = 0 is
-        the derivative. Without it shots have no energy budget; with it the
-        rest of ``force`` counts as dissipation.
+        Energy in J that a contact gives back, of which ``force`` at δ̇ = 0 is the derivative.
+        Without it shots have no energy budget; with it the rest of ``force`` counts as dissipation.
     name, equation : str
         As budgets and messages print them.
     first, last : int, optional
@@ -77,7 +76,7 @@ class ForceLaw:
         return _native.Force(self.name, self.equation, self.force, self.energy, self.first, self.last, self.beside)
 
 
-@options.with_options("shot")
+@options.with_options("shot", "solver steps")
 def shot(
     experiment: Experiment | options.Path_,
     speed: float | str | None = None,
@@ -95,11 +94,6 @@ def shot(
 
     Parameters
     ----------
-    experiment : Experiment or str or path
-        The chain and its striker; or the name of a preset, or a file.
-    speed : float or str, optional
-        Speed of the striker in m/s, or a text such as ``"50 cm/s"``; the
-        experiment's own when absent.
     trace : bool or iterable of sensors
         Sample the experiment's sensors, or these: ``"bead_7"``,
         ``("contact", 40)``, ``"position_0"``, ``"velocity_3"``.
@@ -108,10 +102,6 @@ def shot(
         trace has at most 10^8 numbers.
     forces : ForceLaw or iterable of ForceLaw
         Force laws of Python, in place of the experiment's or beside them.
-    progress : bool, bar or function, optional
-        True draws tqdm's bar; a bar's ``update``, or a function, is called with the
-        number of solver steps since the last time.
-    **options
 
     Returns
     -------
@@ -120,10 +110,8 @@ def shot(
 
     Raises
     ------
-    ExperimentError
-        What the physics rejects, at its place in the experiment.
-    OptionError
-        A number that a shot can't have.
+    ExperimentError, OptionError
+        What the physics rejects, at its place in the experiment; a number that a shot can't have.
 
     Warns
     -----
@@ -188,14 +176,8 @@ def sweep(
 
     Parameters
     ----------
-    experiment : Experiment or str or path
-        A chain with a striker; or the name of a preset, or a file.
     speeds : array_like of shape (speeds,), or str
         Speeds in m/s, at most 100,000; or ``"0.1,0.2"``, ``"FROM:TO:COUNT"``, ``"log:FROM:TO:COUNT"``.
-    progress : bool, bar or function, optional
-        True draws tqdm's bar; a bar's ``update``, or a function, is called with the
-        number of shots since the last time.
-    **options
 
     Returns
     -------
@@ -249,17 +231,12 @@ def ensemble(
 
     Parameters
     ----------
-    experiment : Experiment or str or path
-        A chain with a striker; or the name of a preset, or a file.
     speed : array_like, optional
         Speeds of the striker in m/s; the experiment's own when absent.
     parameters : mapping of str to array_like, optional
         Numbers of the experiment in SI by their paths, or by unmistakable ends
         of them: ``{"young_modulus": [200e9, 213e9]}``. Neighbours along the last
         axis that share their numbers are set up once.
-    progress
-        As for `sweep`.
-    **options
 
     Returns
     -------
