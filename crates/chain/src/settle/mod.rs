@@ -20,7 +20,7 @@ pub use state::State;
 
 use crate::system::System;
 use crate::wave::SolveError;
-use run::Slow;
+use run::Relaxation;
 
 /// How a chain comes to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +97,7 @@ pub fn settle(
     seen: &mut dyn FnMut(f64, &State, &[f64]),
 ) -> Result<Rest, SolveError> {
     check(system, state, slow)?;
-    Slow::new(system, slow, state).run(seen)
+    Relaxation::new(system, slow, state).run(seen)
 }
 
 /// Longest step that is stable for sure, as a fraction of the shortest period:

@@ -19,7 +19,7 @@ const MOST_STEPS: u64 = 50_000_000;
 /// A step below this fraction of the longest time leads nowhere.
 const SHORTEST: f64 = 1e-12;
 
-pub(super) struct Slow<'a> {
+pub(super) struct Relaxation<'a> {
     system: &'a System,
     slow: &'a SlowPhase,
     state: &'a mut State,
@@ -33,7 +33,7 @@ pub(super) struct Slow<'a> {
     next_look: u64,
 }
 
-impl<'a> Slow<'a> {
+impl<'a> Relaxation<'a> {
     pub(super) fn new(system: &'a System, slow: &'a SlowPhase, state: &'a mut State) -> Self {
         Self {
             columns: Columns::new(system, slow, state),

@@ -28,13 +28,13 @@ impl Scan {
 }
 
 /// A point of the line: ln A, ln K and the row's residuals there, if there are any.
-struct Place {
+struct ScanPoint {
     ln_a: f64,
     ln_k: f64,
     residuals: Option<Vec<f64>>,
 }
 
-impl Place {
+impl ScanPoint {
     fn chi_square(&self) -> f64 {
         let squares = |all: &Vec<f64>| all.iter().map(|r| r * r).sum();
         self.residuals.as_ref().map_or(f64::INFINITY, squares)
@@ -72,14 +72,14 @@ impl Gauge {
     }
 
     /// The line at some ln A, each with a guess of ln K.
-    fn places(&self, row: usize, first: Observable, at: Vec<(f64, f64)>) -> Vec<Place> {
+    fn places(&self, row: usize, first: Observable, at: Vec<(f64, f64)>) -> Vec<ScanPoint> {
         let met = self.met(row, first, &at);
         let known = at.iter().zip(&met).filter_map(|((a, _), k)| Some((*a, (*k)?)));
         let points: Vec<Vec<f64>> = known.map(|(a, k)| vec![k.exp(), a.exp()]).collect();
         let start = (Free::Both, self.dry_contact);
         let problem = self.row_problem(row, start, &self.dry_fit.point);
         let mut found = problem.residuals(&points).into_iter();
-        let mut place = |((ln_a, guess), met): (&(f64, f64), &Option<f64>)| Place {
+        let mut place = |((ln_a, guess), met): (&(f64, f64), &Option<f64>)| ScanPoint {
             ln_a: *ln_a,
             ln_k: met.unwrap_or(*guess),
             residuals: met.and_then(|_| Some(found.next()?.ok()?.standardised)),
@@ -165,7 +165,7 @@ impl Root {
 }
 
 /// ln A in the middle of every interval in which something may hide, with a guess of ln K.
-fn halves(line: &[Place]) -> Vec<(f64, f64)> {
+fn halves(line: &[ScanPoint]) -> Vec<(f64, f64)> {
     let wanted = |at: usize| {
         let (a, b) = (&line[at], &line[at + 1]);
         let wide = b.ln_a - a.ln_a > FINEST;
@@ -181,30 +181,30 @@ fn halves(line: &[Place]) -> Vec<(f64, f64)> {
 }
 
 /// Whether chi-square is no larger at a place than beside it.
-fn is_lowest(line: &[Place], at: usize) -> bool {
+fn is_lowest(line: &[ScanPoint], at: usize) -> bool {
     let own = line[at].chi_square();
-    let beside = |other: Option<&Place>| other.is_none_or(|other| own <= other.chi_square());
+    let beside = |other: Option<&ScanPoint>| other.is_none_or(|other| own <= other.chi_square());
     own.is_finite() && beside(at.checked_sub(1).map(|at| &line[at])) && beside(line.get(at + 1))
 }
 
-fn ends(a: &Place, b: &Place) -> bool {
+fn ends(a: &ScanPoint, b: &ScanPoint) -> bool {
     a.residuals.is_some() != b.residuals.is_some()
 }
 
 /// The changes of all residuals but that which the line meets.
-fn changes(a: &Place, b: &Place) -> Vec<(f64, f64)> {
+fn changes(a: &ScanPoint, b: &ScanPoint) -> Vec<(f64, f64)> {
     let (Some(a), Some(b)) = (&a.residuals, &b.residuals) else {
         return Vec::new();
     };
     a.iter().copied().zip(b.iter().copied()).skip(1).collect()
 }
 
-fn changes_sign(a: &Place, b: &Place) -> bool {
+fn changes_sign(a: &ScanPoint, b: &ScanPoint) -> bool {
     changes(a, b).iter().any(|(a, b)| a * b <= 0.0)
 }
 
 /// Whether a residual changes much faster than in both intervals beside.
-fn jumps(line: &[Place], at: usize) -> bool {
+fn jumps(line: &[ScanPoint], at: usize) -> bool {
     let rates = |at: usize| {
         let (a, b) = (&line[at], line.get(at + 1)?);
         let rate = |(from, to): (f64, f64)| (to - from).abs() / (b.ln_a - a.ln_a);
@@ -222,17 +222,17 @@ fn jumps(line: &[Place], at: usize) -> bool {
 
 /// Where chi-square is lowest along the line, and the better ends of intervals in which a
 /// residual changes its sign: points K, A, best first, those that are the same once.
-fn candidates(line: &[Place]) -> Vec<[f64; 2]> {
+fn candidates(line: &[ScanPoint]) -> Vec<[f64; 2]> {
     let lowest = (0..line.len()).filter(|at| is_lowest(line, *at));
     let crossed = (1..line.len()).filter(|at| changes_sign(&line[at - 1], &line[*at]));
     let better = |at: usize| match line[at - 1].chi_square() < line[at].chi_square() {
         true => at - 1,
         false => at,
     };
-    let mut all: Vec<&Place> = lowest.chain(crossed.map(better)).map(|at| &line[at]).collect();
+    let mut all: Vec<&ScanPoint> = lowest.chain(crossed.map(better)).map(|at| &line[at]).collect();
     all.sort_by(|a, b| a.chi_square().total_cmp(&b.chi_square()));
-    let far = |place: &Place| place.chi_square() > TOO_FAR;
-    let mut apart: Vec<&Place> = Vec::new();
+    let far = |place: &ScanPoint| place.chi_square() > TOO_FAR;
+    let mut apart: Vec<&ScanPoint> = Vec::new();
     for place in all {
         // The best stays, to be reported with its distance.
         if !apart.is_empty() && far(place) {
@@ -246,7 +246,7 @@ fn candidates(line: &[Place]) -> Vec<[f64; 2]> {
 }
 
 /// Spans of A in s without residuals.
-fn missing(line: &[Place]) -> Vec<[f64; 2]> {
+fn missing(line: &[ScanPoint]) -> Vec<[f64; 2]> {
     let mut spans: Vec<[f64; 2]> = Vec::new();
     let mut within = false;
     for place in line {

@@ -1,16 +1,16 @@
 use super::*;
 
-fn line(residual: impl Fn(f64) -> Option<f64>) -> Vec<Place> {
+fn line(residual: impl Fn(f64) -> Option<f64>) -> Vec<ScanPoint> {
     let place = |at: usize| at_ln(at as f64 * STEP, &residual);
     (0..40).map(place).collect()
 }
 
-fn at_ln(ln_a: f64, residual: &impl Fn(f64) -> Option<f64>) -> Place {
+fn at_ln(ln_a: f64, residual: &impl Fn(f64) -> Option<f64>) -> ScanPoint {
     let residuals = residual(ln_a).map(|r| vec![0.0, r]);
-    Place { ln_a, ln_k: 0.0, residuals }
+    ScanPoint { ln_a, ln_k: 0.0, residuals }
 }
 
-fn walked(residual: impl Fn(f64) -> Option<f64>) -> Vec<Place> {
+fn walked(residual: impl Fn(f64) -> Option<f64>) -> Vec<ScanPoint> {
     let mut line = line(&residual);
     for _ in 0..HALVINGS {
         let more = halves(&line);
@@ -20,7 +20,7 @@ fn walked(residual: impl Fn(f64) -> Option<f64>) -> Vec<Place> {
     line
 }
 
-fn near(line: &[Place], ln_a: f64) -> bool {
+fn near(line: &[ScanPoint], ln_a: f64) -> bool {
     let near = |point: &[f64; 2]| (point[1].ln() - ln_a).abs() <= FINEST;
     candidates(line).iter().any(near)
 }
