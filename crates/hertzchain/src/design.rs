@@ -233,7 +233,7 @@ pub fn json(problem: &CurveProblem, run_design: &DesignResult) -> Value {
         "ranked": found.ranked.iter().map(one).collect::<Value>(),
         "series": found.greedy.iter().map(one).collect::<Value>(),
         "undetermined": run_design.undetermined,
-        "hopeless": run_design.unidentifiable(problem),
+        "not_identifiable": run_design.unidentifiable(problem),
     })
 }
 

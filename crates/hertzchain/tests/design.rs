@@ -31,7 +31,7 @@ fn a_design_ranks_what_to_measure() {
     let found = json(&with_errors(&[&three[..], &["--json"]].concat()));
     let names = serde_json::json!(["combination 1", "combination 2"]);
     assert_eq!(found["parameters"], names);
-    let reported = found["hopeless"].to_string();
+    let reported = found["not_identifiable"].to_string();
     for words in ["nu up 1.00 % with", "So none of Y, nu, eta can be tightened by itself"] {
         assert!(reported.contains(words), "{words}: {reported}");
     }

@@ -125,7 +125,7 @@ fn watched<T: Send>(
     scope(|scope| {
         let worker = Builder::new().stack_size(STACK_BYTES);
         let worker = worker.spawn_scoped(scope, move || {
-            let _told_when_dropped = done;
+            let _signals_when_dropped = done;
             computed(stop, threads, work)
         });
         let worker = match worker {
@@ -149,7 +149,7 @@ fn apart<T: Send + 'static>(
     let own = stop.clone();
     let worker = Builder::new().stack_size(STACK_BYTES);
     let worker = worker.spawn(move || {
-        let _told_when_dropped = done;
+        let _signals_when_dropped = done;
         computed(&own, threads, work)
     });
     let worker = match worker {

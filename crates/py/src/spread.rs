@@ -114,7 +114,7 @@ struct Elsewhere {
 }
 
 impl Elsewhere {
-    /// Whoever asks stops once batches are lost: nothing of it would count.
+    /// The caller stops once batches are lost: nothing of it would count.
     fn outcomes(&self, batches: &[Batch]) -> Result<Vec<Outcomes>, String> {
         self.waited(batches).map_err(|error| {
             self.stop.ask();

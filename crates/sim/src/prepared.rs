@@ -424,8 +424,7 @@ impl<'a> PreparedShot<'a> {
 
     fn tracer(&self) -> Option<Tracer> {
         let watch = self.plan.watch.as_ref()?;
-        let interval_s = self.interval_s(watch);
-        Some(Tracer::new(watch.sensors.clone(), interval_s, interval_s))
+        Some(Tracer::new(watch.sensors.clone(), self.interval_s(watch)))
     }
 
     fn interval_s(&self, watch: &Watch) -> f64 {

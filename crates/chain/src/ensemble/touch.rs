@@ -95,7 +95,7 @@ impl<'a, N: Number<W>, const W: usize> Sides<'a, N, W> {
     }
 }
 
-/// Notes which contacts of a chunk are open, where anybody follows that.
+/// Notes which contacts of a chunk are open, where that is followed.
 #[inline(always)]
 pub(super) fn note_open<S: Simd, N: Number<W>, const W: usize>(
     simd: S,

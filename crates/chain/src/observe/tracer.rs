@@ -20,7 +20,6 @@ pub struct Trace {
 #[derive(Clone, Debug)]
 pub struct Tracer {
     interval_s: f64,
-    budget_interval_s: f64,
     next: usize,
     trace: Trace,
     full_s: Option<f64>,
@@ -37,12 +36,11 @@ impl Tracer {
     /// they are copied to be written.
     pub const MOST_NUMBERS: usize = 30_000_000;
 
-    /// Samples sensors every `interval_s`, and energy about every
-    /// `budget_interval_s` (at the starts of steps).
-    pub fn new(sensors: Vec<Sensor>, interval_s: f64, budget_interval_s: f64) -> Self {
+    /// Samples sensors every `interval_s`, and energy about as often (at the starts of steps).
+    pub fn new(sensors: Vec<Sensor>, interval_s: f64) -> Self {
         let columns = vec![Vec::new(); sensors.len()];
         let trace = Trace { sensors, columns, ..Trace::default() };
-        Self { interval_s, budget_interval_s, next: 0, trace, full_s: None }
+        Self { interval_s, next: 0, trace, full_s: None }
     }
 
     /// When the trace would have had more than [`Self::MOST_NUMBERS`] numbers, in
@@ -95,8 +93,7 @@ impl Observer for Tracer {
             self.sample(piece, time);
             self.next += 1;
         }
-        let due =
-            self.trace.budgets.last().map_or(0.0, |last| last.time_s + self.budget_interval_s);
+        let due = self.trace.budgets.last().map_or(0.0, |last| last.time_s + self.interval_s);
         if piece.start_s() >= due {
             self.trace.budgets.extend(piece.budget());
         }

@@ -888,7 +888,7 @@ class DesignResult(Result):
         return f"Design for {', '.join(self.parameters)}: measure next", rows
 
 
-NOT_IDENTIFIABLE = {"undetermined": "not determined", "hopeless": "not identifiable", "not_identifiable": "not identifiable"}
+NOT_IDENTIFIABLE = {"undetermined": "not determined", "not_identifiable": "not identifiable"}
 """Keys of ``design.json`` about null spaces: of the data so far, and of all candidates."""
 
 

@@ -19,8 +19,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn campaign(told_by: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure> {
-    let plan = plan_of_folder(told_by)?;
+fn campaign(first: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure> {
+    let plan = plan_of_folder(first)?;
     let merged = hertzchain_sim::rig::merge(&plan, folders, out)?;
     print(&format!(
         "{} series of {}, {} of them copied now; {} of recordings in {}; seed {}.\n",
