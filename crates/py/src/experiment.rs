@@ -5,7 +5,7 @@ use hertzchain::failure::Failure;
 use hertzchain_experiment as experiment;
 use hertzchain_experiment::Units;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{IntoPyDict, PyDict, PyTuple};
 
 /// What has been done to an experiment since it was read.
 #[derive(Clone, Debug, FromPyObject, IntoPyObject)]
@@ -132,15 +132,21 @@ impl Experiment {
         Self::from_text(name, &text)
     }
 
-    /// An experiment that comes with the program: see `hertzchain.preset`.
+    /// An experiment that comes with the program; also `hertzchain.preset`.
     ///
     /// Parameters
     /// ----------
     /// name : str
+    ///     One of `presets`.
     ///
     /// Returns
     /// -------
     /// Experiment
+    ///
+    /// Raises
+    /// ------
+    /// OptionError
+    ///     A name that no preset has.
     #[staticmethod]
     fn preset(name: &str) -> Result<Self, Failed> {
         Ok(Self::read(experiment::preset(name)?))
@@ -308,15 +314,24 @@ impl Experiment {
     }
 }
 
-/// Names and titles of the experiments that come with the program.
+/// The experiments that come with the program.
+///
+/// Returns
+/// -------
+/// dict of str to str
+///     Titles by name.
 #[pyfunction]
-pub(crate) fn presets() -> Vec<(&'static str, &'static str)> {
+pub(crate) fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let lists = [experiment::presets(), experiment::examples(), experiment::campaigns()];
-    let all = lists.into_iter().flatten();
-    all.map(|preset| (preset.name, preset.title())).collect()
+    lists.into_iter().flatten().map(|preset| (preset.name, preset.title())).into_py_dict(py)
 }
 
-/// The JSON Schema of experiment files, as text.
+/// The JSON Schema of experiment files.
+///
+/// Returns
+/// -------
+/// str
+///     JSON, with every key, its unit and what it means.
 #[pyfunction]
 pub(crate) fn schema() -> String {
     format!("{:#}", experiment::schema())

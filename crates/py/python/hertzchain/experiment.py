@@ -11,7 +11,7 @@ from typing import Any
 
 from . import _hertzchain as _native
 from . import _options as options
-from ._hertzchain import Experiment
+from ._hertzchain import Experiment, presets, schema
 from .errors import ExperimentWarning, OptionError, existing, findings
 from .results import Description, Group, LawInfo, Row
 
@@ -25,9 +25,7 @@ Quantity = float | str
 
 @dataclass(frozen=True)
 class PowerOfSpeed:
-    """A material's number that follows the striker's speed v in m/s.
-
-    ``prefactor * v**exponent``.
+    """A material's number that follows the striker's speed v in m/s: ``prefactor * v**exponent``.
 
     Parameters
     ----------
@@ -116,8 +114,8 @@ class Law:
         if not self.parameters:
             return self.name
         units = {known["name"]: known["unit"] for known in _native.laws(self.name)[0]["parameters"]}
-        given = self.parameters.items()
-        return {"law": self.name, **{name: _quantity(value, units.get(name, "1").format(**self.parameters)) for name, value in given}}
+        named = {name: units.get(name, "1").format(**self.parameters) for name in self.parameters}
+        return {"law": self.name} | {name: _quantity(self.parameters[name], unit) for name, unit in named.items()}
 
 
 @dataclass(frozen=True)
@@ -195,8 +193,7 @@ def _quantity(value: object, unit: str) -> object:
         return {"prefactor": _quantity(value.prefactor, unit), "exponent": value.exponent}
     if isinstance(value, str) or unit == "":
         return value
-    number = float(value)  # type: ignore[arg-type]
-    return number if unit == "1" else f"{number!r} {unit}"
+    return float(value) if unit == "1" else f"{float(value)!r} {unit}"  # type: ignore[arg-type]
 
 
 def _part(part: object) -> object:
@@ -237,58 +234,18 @@ def load(path: str | os.PathLike[str]) -> Experiment:
     return Experiment.open(existing(path))
 
 
-def preset(name: str) -> Experiment:
-    """An experiment that comes with the program.
-
-    Parameters
-    ----------
-    name : str
-        One of `presets`.
-
-    Returns
-    -------
-    Experiment
-        In SI.
-
-    Raises
-    ------
-    OptionError
-        A name that no preset has.
-    """
-    return Experiment.preset(name)
+preset = Experiment.preset
 
 
 def opened(experiment: Experiment | options.Path_) -> Experiment:
     """An experiment; a preset by its name, a file by its path."""
     if isinstance(experiment, Experiment):
         return experiment
-    if isinstance(experiment, os.PathLike) or (isinstance(experiment, str) and (experiment.endswith(".toml") or os.sep in experiment)):
-        return load(experiment)
-    if isinstance(experiment, str):
+    if isinstance(experiment, str) and not experiment.endswith(".toml") and os.sep not in experiment:
         return preset(experiment)
+    if isinstance(experiment, (str, os.PathLike)):
+        return load(experiment)
     raise OptionError(f"an experiment of type {type(experiment).__name__}: expected an Experiment, the name of a preset, or a file")
-
-
-def presets() -> dict[str, str]:
-    """The experiments that come with the program.
-
-    Returns
-    -------
-    dict of str to str
-        Titles by name.
-    """
-    return dict(_native.presets())
-
-
-def schema() -> str:
-    """The JSON Schema of experiment files.
-
-    Returns
-    -------
-    str
-        JSON, with every key, its unit and what it means.
-    """
-    return _native.schema()
 
 
 def build(tables: Mapping[str, object] | str | None = None, /, name: str = "python", **more: object) -> Experiment:
