@@ -21,9 +21,11 @@ pub mod system;
 pub mod theory;
 pub mod wave;
 
-pub use chain::{Bead, Chain, ChainError, FarEnd, Gap, Initial, Push, Section, Start, Tension};
-pub use instruction_set::InstructionSet;
-pub use material::{Material, Pair};
-pub use motion::Motion;
-pub use sensor::Sensor;
-pub use system::System;
+pub use self::{
+    chain::{Bead, Chain, ChainError, FarEnd, Gap, Initial, Push, Section, Start, Tension},
+    instruction_set::InstructionSet,
+    material::{BeadPair, Material},
+    motion::Motion,
+    sensor::Sensor,
+    system::System,
+};

@@ -64,7 +64,7 @@ impl Material {
 
 /// What a contact law may know of the two bodies it joins.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
+pub struct BeadPair {
     /// The body on the striker's side.
     pub left: Material,
     /// The body on the wall's side.
@@ -75,7 +75,7 @@ pub struct Pair {
     pub mass_kg: f64,
 }
 
-impl Pair {
+impl BeadPair {
     /// Hertz stiffness K = (4/3) √R*/(D1 + D2) in N/m^{3/2} [Hertz1881].
     pub fn hertz_stiffness(&self) -> f64 {
         let compliance = self.left.compliance_per_pa() + self.right.compliance_per_pa();

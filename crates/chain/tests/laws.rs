@@ -6,7 +6,7 @@ use crate::common::{close, cubic, hertz, row, viscoelastic};
 use hertzchain_chain::laws::{
     Closed, Columns, DampingCubic, LAWS, Law, Nature, Parameter, Source, law,
 };
-use hertzchain_chain::{InstructionSet, Pair, System};
+use hertzchain_chain::{BeadPair, InstructionSet, System};
 use std::sync::Arc;
 
 /// A law with every required parameter at a value of the right size.
@@ -29,7 +29,8 @@ fn sample(row: &hertzchain_chain::laws::Row) -> Arc<dyn Law> {
 }
 
 fn columns(law: &dyn Law) -> Columns {
-    let pair = Pair { left: common::STEEL, right: common::STEEL, radius_m: 3e-3, mass_kg: 4e-3 };
+    let pair =
+        BeadPair { left: common::STEEL, right: common::STEEL, radius_m: 3e-3, mass_kg: 4e-3 };
     Columns::from_rows(&[law.coefficients(&pair).unwrap()])
 }
 
@@ -125,8 +126,12 @@ fn no_gated_law_acts_across_a_gap() {
 fn columns_give_the_same_bits_as_single_contacts() {
     for row in LAWS {
         let law = sample(row);
-        let pair =
-            |radius_m| Pair { left: common::STEEL, right: common::STEEL, radius_m, mass_kg: 4e-3 };
+        let pair = |radius_m| BeadPair {
+            left: common::STEEL,
+            right: common::STEEL,
+            radius_m,
+            mass_kg: 4e-3,
+        };
         let rows: Vec<_> =
             (1..=9).map(|i| law.coefficients(&pair(1e-3 * f64::from(i))).unwrap()).collect();
         let k = Columns::from_rows(&rows);
@@ -254,7 +259,7 @@ fn restitution_of_an_elastic_plastic_collision_matches_its_closed_form() {
 
 #[test]
 fn viscoelastic_damping_with_time_and_stiffness_given_needs_no_material() {
-    let rigid = Pair {
+    let rigid = BeadPair {
         left: hertzchain_chain::Material::RIGID,
         right: hertzchain_chain::Material::RIGID,
         radius_m: 0.25,

@@ -11,7 +11,7 @@ fn dry() -> Vec<std::sync::Arc<dyn laws::Law>> {
 
 #[test]
 fn stiffness_and_relaxation_time_of_the_paper_follow_from_its_materials() {
-    let pair = Pair { left: STEEL, right: STEEL, radius_m: 0.5 * 6.35e-3, mass_kg: 4.27e-3 };
+    let pair = BeadPair { left: STEEL, right: STEEL, radius_m: 0.5 * 6.35e-3, mass_kg: 4.27e-3 };
     // Printed to eleven digits.
     close(pair.hertz_stiffness(), 8.792_630_379_6e9, 1e-11);
     close(pair.mean_relaxation_time_s(Material::relaxation_time_s), 3.385_289_514_9e-7, 1e-10);

@@ -14,7 +14,7 @@ use crate::settings::{BodyShape, Far, Near};
 use crate::spec::Spec;
 use crate::validity;
 use crate::values::Units;
-use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Section, Start};
+use hertzchain_chain::{Bead, BeadPair, Chain, FarEnd, Material, Section, Start};
 use std::collections::HashSet;
 use std::ops::RangeInclusive;
 
@@ -277,7 +277,7 @@ impl Reference {
 }
 
 /// A parameter's value by materials and radii of a contact; `None` where they give none.
-fn own_value(law: &str, parameter: &str, pair: &Pair) -> Option<f64> {
+fn own_value(law: &str, parameter: &str, pair: &BeadPair) -> Option<f64> {
     let value = match (law, parameter) {
         (_, "stiffness") => pair.hertz_stiffness(),
         ("damping_brilliantov_1996", _) => {

@@ -60,17 +60,19 @@ mod values;
 pub mod reading;
 pub mod units;
 
-pub use assemble::Reference;
-pub use contacts::{LawSpec, SectionSpec};
-pub use experiment::{Experiment, OpenError, Preset, campaigns, examples, preset, presets};
-pub use paths::{NamedNumber, PathError};
-pub use reading::{Pick, Reading, Switch};
-pub use report::{Finding, Mistakes, UnknownName, Warning};
-pub use rig::{
-    Actuator, Amplifier, Campaign, Channels, Laying, LowPass, LowPassFactor, LowPassKind,
-    Photogate, Recorder, Rig, RigPart, RigPartKind, Trigger,
+pub use self::{
+    assemble::Reference,
+    contacts::{LawSpec, SectionSpec},
+    experiment::{Experiment, OpenError, Preset, campaigns, examples, preset, presets},
+    paths::{NamedNumber, PathError},
+    reading::{Pick, Reading, Switch},
+    report::{Finding, Mistakes, UnknownName, Warning},
+    rig::{
+        Actuator, Amplifier, Campaign, Channels, Laying, LowPass, LowPassFactor, LowPassKind,
+        Photogate, Recorder, Rig, RigPart, RigPartKind, Trigger,
+    },
+    schema::schema,
+    settings::{Liquid, Method, Solver},
+    validity::longest_duration_s,
+    values::Units,
 };
-pub use schema::schema;
-pub use settings::{Liquid, Method, Solver};
-pub use validity::longest_duration_s;
-pub use values::Units;

@@ -9,7 +9,7 @@ use crate::settings::{Method, Near};
 use crate::spec::Spec;
 use crate::values::Units;
 use hertzchain_chain::laws::{Closed, Columns, Law, Nature, Source};
-use hertzchain_chain::{Chain, FarEnd, Gap, Pair, Push, Section, Start, System};
+use hertzchain_chain::{BeadPair, Chain, FarEnd, Gap, Push, Section, Start, System};
 use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
@@ -44,7 +44,7 @@ struct Collision<'a> {
     spec: &'a Spec,
     section: &'a SectionSpec,
     contact: usize,
-    pair: Pair,
+    pair: BeadPair,
     speed_m_s: f64,
     /// Overlap at which the laws that push back have taken up the energy.
     overlap_m: f64,

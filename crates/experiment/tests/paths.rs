@@ -1,7 +1,7 @@
 //! Named numbers: found, read, set.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use hertzchain_chain::{Pair, Start};
+use hertzchain_chain::{BeadPair, Start};
 use hertzchain_experiment::{Experiment, PathError, examples, preset, presets};
 
 #[test]
@@ -69,7 +69,7 @@ fn what_the_file_leaves_out_can_be_set_too() {
     assert_eq!(chain.incline_rad, 0.01);
     assert_eq!(set.solver().accuracy, 1e-9);
     assert!(matches!(chain.start, Start::Striker { bead, .. } if bead.mass_kg == 0.02));
-    let pair = Pair {
+    let pair = BeadPair {
         left: chain.beads[0].material,
         right: chain.beads[0].material,
         radius_m: 0.003,

@@ -1,7 +1,7 @@
 //! The files that come with the program, against the numbers they stand for.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use hertzchain_chain::{Bead, Chain, FarEnd, Material, Pair, Start};
+use hertzchain_chain::{Bead, BeadPair, Chain, FarEnd, Material, Start};
 use hertzchain_experiment::{examples, preset, presets};
 
 fn chain(name: &str, speed_m_s: Option<f64>) -> Chain {
@@ -13,8 +13,8 @@ fn relative(found: f64, expected: f64) -> f64 {
 }
 
 /// Two equal spheres in contact.
-fn pair(material: Material, radius_m: f64, mass_kg: f64) -> Pair {
-    Pair { left: material, right: material, radius_m: radius_m / 2.0, mass_kg: mass_kg / 2.0 }
+fn pair(material: Material, radius_m: f64, mass_kg: f64) -> BeadPair {
+    BeadPair { left: material, right: material, radius_m: radius_m / 2.0, mass_kg: mass_kg / 2.0 }
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn an_unknown_preset_names_the_nearest() {
 /// Hertz stiffness of two bodies, as the laws of a contact see them.
 fn stiffness(chain: &Chain, contact: usize, left: &Bead, right: (f64, Material)) -> f64 {
     let section = chain.sections.iter().find(|s| s.contacts.contains(&contact));
-    let pair = Pair {
+    let pair = BeadPair {
         left: left.material,
         right: right.1,
         radius_m: (1.0 / left.radius_m + 1.0 / right.0).recip(),

@@ -22,11 +22,13 @@ mod matrix;
 mod rig;
 mod text;
 
-pub use animation::Animation;
-pub use chart::{Chart, Dash, Legend, Marker, Series, case_look};
-pub use draw::{Colour, ColourMap};
-pub use figure::{Figure, Panel};
-pub use files::FigureError;
-pub use heat::HeatMap;
-pub use matrix::{Verdict, VerdictMatrix};
-pub use rig::{RigDrawing, RigEnd};
+pub use self::{
+    animation::Animation,
+    chart::{Chart, Dash, Legend, Marker, Series, case_look},
+    draw::{Colour, ColourMap},
+    figure::{Figure, Panel},
+    files::FigureError,
+    heat::HeatMap,
+    matrix::{ClaimVerdict, VerdictMatrix},
+    rig::{RigDrawing, RigEnd},
+};

@@ -6,7 +6,7 @@ use crate::text::{Anchor, LEAST_SIZE, TextLine, wrap};
 
 /// The answer to "does the model show what is claimed?".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Verdict {
+pub enum ClaimVerdict {
     /// It does.
     Holds,
     /// It does in at least half of the comparisons that the claim covers, or meets the claim's
@@ -18,7 +18,7 @@ pub enum Verdict {
     NotDecidable,
 }
 
-impl Verdict {
+impl ClaimVerdict {
     /// All verdicts.
     pub const ALL: [Self; 4] = [Self::Holds, Self::InPart, Self::Fails, Self::NotDecidable];
 
@@ -52,7 +52,7 @@ impl Verdict {
     }
 }
 
-impl std::fmt::Display for Verdict {
+impl std::fmt::Display for ClaimVerdict {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name())
     }
@@ -79,8 +79,8 @@ const MARGINS: f64 = 6.0;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct VerdictMatrix {
     columns: Vec<String>,
-    rows: Vec<(String, Vec<Verdict>)>,
-    throughout: Vec<(Verdict, String)>,
+    rows: Vec<(String, Vec<ClaimVerdict>)>,
+    throughout: Vec<(ClaimVerdict, String)>,
     notes: Vec<String>,
 }
 
@@ -92,7 +92,7 @@ impl VerdictMatrix {
     }
 
     /// Adds a row; cells beyond the columns are dropped, missing ones stay empty.
-    pub fn row(mut self, claim: &str, verdicts: &[Verdict]) -> Self {
+    pub fn row(mut self, claim: &str, verdicts: &[ClaimVerdict]) -> Self {
         let cells = verdicts.iter().copied().take(self.columns.len()).collect();
         self.rows.push((claim.into(), cells));
         self
@@ -100,7 +100,7 @@ impl VerdictMatrix {
 
     /// Adds claims that have one verdict in all columns, as a line of text
     /// below the rows.
-    pub fn throughout(mut self, verdict: Verdict, claims: &str) -> Self {
+    pub fn throughout(mut self, verdict: ClaimVerdict, claims: &str) -> Self {
         self.throughout.push((verdict, claims.into()));
         self
     }
@@ -144,7 +144,7 @@ impl VerdictMatrix {
 struct MatrixLayout {
     claims: Vec<Vec<TextLine>>,
     headers: Vec<TextLine>,
-    below: Vec<(Option<Verdict>, Vec<TextLine>)>,
+    below: Vec<(Option<ClaimVerdict>, Vec<TextLine>)>,
     labels: f64,
     cell: f64,
     header: f64,
@@ -184,7 +184,7 @@ impl MatrixLayout {
         &self,
         matrix: &VerdictMatrix,
         page: f64,
-    ) -> Vec<(Option<Verdict>, Vec<TextLine>)> {
+    ) -> Vec<(Option<ClaimVerdict>, Vec<TextLine>)> {
         let width = page.max(self.size().0);
         let same = matrix.throughout.iter().map(|(verdict, claims)| {
             let lines = wrap(claims, FONT, width - INDENT, 30);
@@ -274,14 +274,15 @@ impl MatrixLayout {
     }
 
     fn key_width(&self) -> f64 {
-        let widths = Verdict::ALL.iter().map(|v| TextLine::new(v.name(), FONT).width() + KEY_ROOM);
+        let widths =
+            ClaimVerdict::ALL.iter().map(|v| TextLine::new(v.name(), FONT).width() + KEY_ROOM);
         widths.sum()
     }
 
     fn draw_key(&self, canvas: &mut Canvas) {
         let middle = self.size().1 - 0.5 * KEY + 3.0;
         let mut x = (self.size().0 - self.key_width()).max(0.0);
-        for verdict in Verdict::ALL {
+        for verdict in ClaimVerdict::ALL {
             draw_symbol(canvas, verdict, &Rect::sized(x, middle - 5.0, 12.0, 10.0));
             let name = TextLine::new(verdict.name(), FONT);
             name.draw(canvas, Point::new(x + 16.0, middle), Anchor::LEFT_MIDDLE, Colour::BLACK);
@@ -297,24 +298,24 @@ fn below_height(lines: &[TextLine]) -> f64 {
 
 /// Fills `cell` and draws the symbol of a verdict in its middle, as a path: it does not depend on
 /// what a font offers.
-fn draw_symbol(canvas: &mut Canvas, verdict: Verdict, cell: &Rect) {
+fn draw_symbol(canvas: &mut Canvas, verdict: ClaimVerdict, cell: &Rect) {
     canvas.rect(cell, &Paint::fill(verdict.colour()));
     let (c, r) = (cell.centre(), 0.3 * cell.width().min(cell.height()).min(11.0));
     let at = |dx: f64, dy: f64| Point::new(c.x + dx * r, c.y + dy * r);
     let white = Paint::line(Colour::WHITE, 0.42 * r);
     match verdict {
-        Verdict::Holds => {
+        ClaimVerdict::Holds => {
             let tick = [at(-0.9, 0.05), at(-0.25, 0.75), at(0.95, -0.8)];
             canvas.path(PathData::new().polyline(&tick), &white);
         }
-        Verdict::Fails => {
+        ClaimVerdict::Fails => {
             let mut cross = PathData::new();
             cross.segment(at(-0.75, -0.75), at(0.75, 0.75));
             cross.segment(at(-0.75, 0.75), at(0.75, -0.75));
             canvas.path(&cross, &white);
         }
-        Verdict::InPart => draw_half_circle(canvas, c, 0.8 * r),
-        Verdict::NotDecidable => {
+        ClaimVerdict::InPart => draw_half_circle(canvas, c, 0.8 * r),
+        ClaimVerdict::NotDecidable => {
             let mark = TextLine::bold("?", (2.6 * r).max(LEAST_SIZE));
             mark.draw(canvas, c, Anchor::MIDDLE, Colour::grey(90));
         }

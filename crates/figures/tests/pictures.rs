@@ -5,8 +5,8 @@ use crate::covered::covered;
 use crate::type_size::smallest_type;
 use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
 use hertzchain_figures::{
-    Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, RigDrawing, RigEnd, Series, Verdict,
-    VerdictMatrix,
+    Chart, ClaimVerdict, Colour, ColourMap, Dash, Figure, HeatMap, Marker, RigDrawing, RigEnd,
+    Series, VerdictMatrix,
 };
 use proptest::prelude::*;
 use resvg::tiny_skia::{Pixmap, Transform};
@@ -27,7 +27,7 @@ fn every_kind() -> Vec<Figure> {
         .colours(ColourMap::Diverging)
         .label("$v$ (m/s)");
     let table = VerdictMatrix::new(&["default", "preload 0.24 N"])
-        .row("Motor oil lengthens the ToF", &[Verdict::Holds, Verdict::NotDecidable]);
+        .row("Motor oil lengthens the ToF", &[ClaimVerdict::Holds, ClaimVerdict::NotDecidable]);
     let rig = RigDrawing {
         beads: 40,
         sensor_bead: Some(7),
@@ -430,7 +430,7 @@ proptest! {
         columns in prop::collection::vec("[ -~]{0,40}", 0..50), claims in prop::collection::vec("[ -~]{0,160}", 0..30),
     ) {
         let names: Vec<&str> = columns.iter().map(String::as_str).collect();
-        let row = |t: VerdictMatrix, c: &String| t.row(c, &[Verdict::Fails, Verdict::InPart, Verdict::Holds]);
+        let row = |t: VerdictMatrix, c: &String| t.row(c, &[ClaimVerdict::Fails, ClaimVerdict::InPart, ClaimVerdict::Holds]);
         let figure = claims.iter().fold(VerdictMatrix::new(&names), row).figure();
         check(&figure.svg_outlined());
         check_legible(&figure.svg());

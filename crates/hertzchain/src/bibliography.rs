@@ -25,7 +25,7 @@ const LETTERS: [(&str, &str); 16] = [
 
 /// A published work.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Work {
+pub(crate) struct Publication {
     /// Authors, family name first.
     pub(crate) authors: Vec<String>,
     /// Its title.
@@ -42,7 +42,7 @@ pub(crate) struct Work {
     elsewhere: Option<String>,
 }
 
-impl Work {
+impl Publication {
     /// The work with this key.
     pub(crate) fn of_key(key: &str) -> Option<Self> {
         let entry = entry(key)?;

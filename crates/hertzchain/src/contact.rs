@@ -1,6 +1,6 @@
 //! Hertz's contact of two bodies at the peak of a pulse.
 
-use hertzchain_chain::Pair;
+use hertzchain_chain::BeadPair;
 use hertzchain_experiment::Units;
 use hertzchain_sim::{Plan, Shot};
 use serde::Serialize;
@@ -24,7 +24,7 @@ impl HertzContact {
         (units == Units::Si).then(|| Self::new(&pair, force_n)).flatten()
     }
 
-    fn new(pair: &Pair, force_n: f64) -> Option<Self> {
+    fn new(pair: &BeadPair, force_n: f64) -> Option<Self> {
         /// Spheres of ν = 0.3 yield first, below the surface, where p₀ is so many times the
         /// yield strength [Thornton1997].
         const FIRST_YIELD: f64 = 1.6;

@@ -1,6 +1,6 @@
 //! The registry of contact laws as data.
 
-use crate::bibliography::Work;
+use crate::bibliography::Publication;
 use crate::failure::Failure;
 use hertzchain_chain::laws::{LAWS, LawInfo, Nature, Parameter, Source, find};
 use serde_json::{Value as Json, json};
@@ -36,7 +36,7 @@ pub fn nature(info: &LawInfo) -> &'static str {
 }
 
 fn source_json(info: &LawInfo) -> Json {
-    Work::of_key(info.reference).map_or(Json::Null, |work| {
+    Publication::of_key(info.reference).map_or(Json::Null, |work| {
         json!({
             "authors": work.authors,
             "title": work.title,

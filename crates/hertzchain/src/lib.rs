@@ -89,17 +89,19 @@ pub mod shot;
 pub mod sweep;
 mod table;
 
-pub use campaign::campaign;
-pub use describe::{Description, check, theory};
-pub use design::design;
-pub use failure::Failure;
-pub use fit::fit;
-pub use gauge::gauge;
-pub use input::instruction_set;
-pub use measure::measure;
-pub use records::measure_records;
-pub use shot::shot;
-pub use sweep::sweep;
+pub use self::{
+    campaign::campaign,
+    describe::{Description, check, theory},
+    design::design,
+    failure::Failure,
+    fit::fit,
+    gauge::gauge,
+    input::instruction_set,
+    measure::measure,
+    records::measure_records,
+    shot::shot,
+    sweep::sweep,
+};
 
 /// The page's examples, compiled and run with the tests.
 #[cfg(doctest)]
@@ -108,20 +110,22 @@ pub struct UseFromRust;
 
 /// What most programs need, by one `use`.
 pub mod prelude {
-    pub use crate::campaign::{PreparedCampaign, campaign};
-    pub use crate::describe::{Description, check, theory};
-    pub use crate::design::{DesignResult, design};
-    pub use crate::fit::{FitResult, fit};
-    pub use crate::gauge::{GaugeResult, gauge};
-    pub use crate::measure::{MeasureResult, measure};
-    pub use crate::options::{
-        CampaignOptions, CheckOptions, DesignOptions, FitOptions, GaugeOptions, MeasureOptions,
-        Method, ShotOptions, SweepOptions, from_json,
+    pub use crate::{
+        campaign::{PreparedCampaign, campaign},
+        describe::{Description, check, theory},
+        design::{DesignResult, design},
+        fit::{FitResult, fit},
+        gauge::{GaugeResult, gauge},
+        measure::{MeasureResult, measure},
+        options::{
+            CampaignOptions, CheckOptions, DesignOptions, FitOptions, GaugeOptions, MeasureOptions,
+            Method, ShotOptions, SweepOptions, from_json,
+        },
+        records::{Channel, Record, measure_records},
+        shot::{PreparedShot, ShotResult, shot},
+        sweep::{SweepResult, sweep},
+        {Failure, inference},
     };
-    pub use crate::records::{Channel, Record, measure_records};
-    pub use crate::shot::{PreparedShot, ShotResult, shot};
-    pub use crate::sweep::{SweepResult, sweep};
-    pub use crate::{Failure, inference};
     pub use hertzchain_experiment::{Experiment, preset};
     pub use hertzchain_infer::Data;
     pub use hertzchain_sim::{Batch, Plan, Shard, shoot};

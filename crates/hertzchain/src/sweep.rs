@@ -244,12 +244,12 @@ impl LawView {
 impl Serialize for SweepResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
-        struct View<'a> {
+        struct SweepView<'a> {
             #[serde(flatten)]
             summary: &'a SweepSummary,
             points: Points<'a>,
         }
-        View { summary: &self.summary, points: Points(self) }.serialize(serializer)
+        SweepView { summary: &self.summary, points: Points(self) }.serialize(serializer)
     }
 }
 

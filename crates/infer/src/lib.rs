@@ -19,31 +19,31 @@ mod pulses;
 mod random;
 mod sampler;
 
-pub use compare::{
-    Compared, Comparison, Criteria, CrossValidation, Folding, compare, cross_validate,
-};
-pub use covariance::Covariance;
-pub use curve::{
-    Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Joint, Kind, Model, Part, Predicted,
-    Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
-};
-pub use data::{
-    Data, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, widening,
-    wrong_speed,
-};
-pub use design::{Aim, Candidate, Design, Expected, design};
-pub use error::InferError;
-pub use free::{Form, FreeNumber, FreeNumbers, SHORT_NAMES, same_number};
-pub use goodness::{Goodness, Largest, Runs, largest_residual, runs};
-pub use identify::{Identifiability, UnidentifiableDirection};
-pub use least_squares::{Binding, Ending, Fit, Fitting, Jacobian, Loss, Started, fit};
-pub use problem::{
-    Batch, Compute, ModelError, Outcomes, Parameter, Prior, Problem, Residuals, Response, Spread,
-    titled,
-};
-pub use profile::{End, Interval, Profile, Profiling, RISE_OF_95_PERCENT, profile};
-pub use pulses::{PulseProblem, Pulses, Respond};
-pub use sampler::{
-    Autocorrelation, Chain, Diagnosis, Posterior, Requirements, Sampling, Shortfall, Unconverged,
-    autocorrelation_time, split_r_hat,
+pub use self::{
+    compare::{Compared, Comparison, Criteria, CrossValidation, Folding, compare, cross_validate},
+    covariance::Covariance,
+    curve::{
+        Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Joint, Kind, Model, Part,
+        Predicted, Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
+    },
+    data::{
+        Data, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, widening,
+        wrong_speed,
+    },
+    design::{Aim, Candidate, Design, Expected, design},
+    error::InferError,
+    free::{Form, FreeNumber, FreeNumbers, SHORT_NAMES, same_number},
+    goodness::{Goodness, Largest, Runs, largest_residual, runs},
+    identify::{Identifiability, UnidentifiableDirection},
+    least_squares::{Binding, Ending, Fit, Fitting, Jacobian, Loss, Started, fit},
+    problem::{
+        Batch, Compute, ModelError, Outcomes, Parameter, Prior, Problem, Residuals, Response,
+        Spread, titled,
+    },
+    profile::{End, Interval, Profile, Profiling, RISE_OF_95_PERCENT, profile},
+    pulses::{PulseProblem, Pulses, Respond},
+    sampler::{
+        Autocorrelation, Chain, Diagnosis, Posterior, Requirements, Sampling, Shortfall,
+        Unconverged, autocorrelation_time, split_r_hat,
+    },
 };

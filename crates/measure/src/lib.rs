@@ -21,11 +21,13 @@ mod separation;
 mod shot;
 mod table;
 
-pub use ambiguous::resolve_ambiguous;
-pub use curves::{Case, Curves, Grouping, Laws, SpeedRow, UnmeasuredSpeed, WetOverDry};
-pub use error::MeasureError;
-pub use level::Level;
-pub use list::ShotList;
-pub use run::{Cut, Measurement, Note, Options, Watch, measure, measure_records};
-pub use shot::{Example, Shot};
-pub use table::{laws_csv, ratios_csv, shots_csv, speeds_csv, write_shots};
+pub use self::{
+    ambiguous::resolve_ambiguous,
+    curves::{Case, Curves, Grouping, Laws, SpeedRow, UnmeasuredSpeed, WetOverDry},
+    error::MeasureError,
+    level::Level,
+    list::ShotList,
+    run::{Cut, Measurement, Note, Options, Watch, measure, measure_records},
+    shot::{Example, Shot},
+    table::{laws_csv, ratios_csv, shots_csv, speeds_csv, write_shots},
+};

@@ -4,7 +4,7 @@ use crate::covered::covered;
 use crate::type_size::smallest_type;
 use hertzchain_experiment::Reading;
 use hertzchain_figures::Figure;
-use hertzchain_paper::claims::{Claim, Verdict, claims};
+use hertzchain_paper::claims::{Claim, ClaimVerdict, claims};
 use hertzchain_paper::figures;
 use hertzchain_paper::readings::{ReadingRow, ReadingScan};
 use hertzchain_paper::reproduce::{PROVENANCE, ReproduceOptions, Reproduction, Silent, reproduce};
@@ -31,8 +31,8 @@ fn pictures(computed: &mut Reproduction, moving: usize) -> Vec<(&'static str, Fi
         reading,
         verdicts: (0..claims.len())
             .map(|claim| match moved > 0 && claim % (moved + 2) == 1 {
-                true => Verdict::Fails,
-                false => Verdict::Holds,
+                true => ClaimVerdict::Fails,
+                false => ClaimVerdict::Holds,
             })
             .collect(),
         values: vec![0.0; claims.len()],

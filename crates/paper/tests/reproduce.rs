@@ -2,7 +2,7 @@
 
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::{Reading, preset};
-use hertzchain_paper::claims::{Branch, Evidence, ShotPoint, Verdict, claims};
+use hertzchain_paper::claims::{ClaimVerdict, Evidence, ShotPoint, TofBranch, claims};
 use hertzchain_paper::readings::{Draw, DryPoisson, scan};
 use hertzchain_paper::reproduce::{Cases, SPEEDS_M_S};
 use hertzchain_paper::reproduce::{
@@ -30,7 +30,7 @@ fn times_of_flight_are_those_of_an_independent_integration() {
     ];
     for (case, speed, incident, reflected) in known {
         let p = evidence.curve(case).unwrap().at(speed).unwrap();
-        for (branch, known) in Branch::BOTH.into_iter().zip([incident, reflected]) {
+        for (branch, known) in TofBranch::BOTH.into_iter().zip([incident, reflected]) {
             let off = (p.tof_s(branch) / known - 1.0).abs();
             // The rerun that estimates what was reached is itself wrong by a fraction.
             assert!(off < 2.0 * p.accuracy_reached.max(1e-9), "{case} {speed}: {off:e}");
@@ -216,7 +216,7 @@ fn closing_the_gaps_behind_the_pulse_hardly_shortens_the_way_back() {
     let loosening = claims().unwrap();
     let mut loosening = loosening.iter().filter(|c| c.claim.id == "loosening");
     let finding = loosening.next().unwrap().decide(&evidence);
-    assert_eq!(finding.verdict, Verdict::Fails, "{finding:?}");
+    assert_eq!(finding.verdict, ClaimVerdict::Fails, "{finding:?}");
     assert!(finding.detail.contains("without losses"), "{finding:?}");
 }
 

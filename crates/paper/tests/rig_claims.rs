@@ -3,7 +3,7 @@
 use crate::small::{TEXT, experiment};
 use hertzchain_chain::settle::State;
 use hertzchain_experiment::{Experiment, preset};
-use hertzchain_paper::claims::{ClaimFinding, Needs, Verdict};
+use hertzchain_paper::claims::{ClaimFinding, ClaimVerdict, Needs};
 use hertzchain_paper::reproduce::Silent;
 use hertzchain_paper::rig_claims::{
     FACTORS, Observed, RigClaims, RigDesign, RigEvidence, SpeedSeries, TriedRig, claims, observe,
@@ -124,7 +124,7 @@ fn every_claim_holds_on_a_rig_that_agrees_with_the_paper() {
     for evaluator in claims().unwrap() {
         let finding = evaluator.decide(&agreeing());
         let id = &evaluator.claim.id;
-        assert_eq!(finding.verdict, Verdict::Holds, "{id}: {finding:?}");
+        assert_eq!(finding.verdict, ClaimVerdict::Holds, "{id}: {finding:?}");
     }
 }
 
@@ -134,7 +134,7 @@ fn every_verdict_flips_when_its_numbers_change() {
         let claim = &evaluator.claim;
         let change = BREAKS.iter().find(|(id, ..)| id == &claim.id).unwrap();
         let finding = evaluator.decide(&broken(change));
-        assert_eq!(finding.verdict, Verdict::Fails, "{}: {finding:?}", claim.id);
+        assert_eq!(finding.verdict, ClaimVerdict::Fails, "{}: {finding:?}", claim.id);
         let other_side = match claim.needs {
             Needs::Below => finding.value >= claim.threshold,
             Needs::Above | Needs::Within => finding.value <= claim.threshold,
@@ -148,7 +148,7 @@ fn a_claim_that_half_of_the_rigs_show_holds_in_part() {
     let mut evidence = agreeing();
     let failing = BREAKS.iter().find(|(id, ..)| *id == "loose-spread");
     evidence.rigs.extend(broken(failing.unwrap()).rigs);
-    assert_eq!(decide("loose-spread", &evidence).verdict, Verdict::InPart);
+    assert_eq!(decide("loose-spread", &evidence).verdict, ClaimVerdict::InPart);
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn gaps_of_a_millimetre_are_not_small() {
     for at in &mut evidence.rigs[0].speeds {
         at.tapped.iter_mut().for_each(|shot| shot.gaps_after_m[0] = 2e-3);
     }
-    assert_eq!(decide("gaps-left", &evidence).verdict, Verdict::Fails);
+    assert_eq!(decide("gaps-left", &evidence).verdict, ClaimVerdict::Fails);
 }
 
 #[test]
@@ -171,11 +171,11 @@ fn what_was_not_seen_is_not_decidable() {
     }
     for evaluator in claims().unwrap() {
         let verdict = evaluator.decide(&nothing).verdict;
-        assert_eq!(verdict, Verdict::NotDecidable, "{}", evaluator.claim.id);
+        assert_eq!(verdict, ClaimVerdict::NotDecidable, "{}", evaluator.claim.id);
     }
     // Missing pulses are not a spread of nothing.
     for id in ["loose-spread", "taps-shrink-own", "return-spreads-own", "return-longer"] {
-        assert_eq!(decide(id, &blind).verdict, Verdict::NotDecidable, "{id}");
+        assert_eq!(decide(id, &blind).verdict, ClaimVerdict::NotDecidable, "{id}");
     }
 }
 
@@ -187,7 +187,7 @@ fn series_without_pulses_do_not_count_beside_those_that_have_them() {
         shot.incident_s = f64::NAN;
     }
     let after = decide("loose-spread", &evidence);
-    assert_eq!(after.verdict, Verdict::Holds);
+    assert_eq!(after.verdict, ClaimVerdict::Holds);
     // All series spread three times as much as the striker adds.
     assert!((after.value / before.value - 1.0).abs() < 0.05, "{after:?}");
 }
@@ -198,7 +198,7 @@ fn strikers_that_all_stay_do_not_rebound_differently() {
     for at in &mut evidence.rigs[0].speeds {
         at.loose.iter_mut().for_each(|shot| shot.rebound_m_s = f64::NAN);
     }
-    assert_eq!(decide("rebounds-differ", &evidence).verdict, Verdict::Fails);
+    assert_eq!(decide("rebounds-differ", &evidence).verdict, ClaimVerdict::Fails);
 }
 
 /// Of numbers e^±1 the logarithm's mean is 0, its standard error by theory

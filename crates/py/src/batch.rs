@@ -2,7 +2,7 @@
 
 use crate::columns::{self, Columns, copied, list};
 use crate::experiment::Experiment;
-use crate::failure::Failed;
+use crate::failure::PyFailure;
 use crate::job::Job;
 use crate::json;
 use crate::options::parsed;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 #[pyfunction]
 pub(crate) fn speeds<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let list = parse_speeds(text);
-    let list = list.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
+    let list = list.map_err(|error| PyFailure::from(Failure::User(error.to_string())))?;
     Ok(list.into_pyarray(py))
 }
 
@@ -61,10 +61,10 @@ impl Run {
         let values = values?;
         let asked: SweepOptions = parsed("sweep", &options)?;
         let batch = sweep::batch(&experiment.inner, speeds_m_s.clone(), &asked);
-        let mut batch = batch.map_err(Failed::from)?;
+        let mut batch = batch.map_err(PyFailure::from)?;
         for (name, values) in names.iter().zip(&values) {
             let with = batch.with_number(name, values.clone());
-            batch = with.map_err(Failed::from)?;
+            batch = with.map_err(PyFailure::from)?;
         }
         let threads = asked.threads.map_or(0, |threads| threads.0);
         let experiment = experiment.clone();
@@ -149,7 +149,7 @@ impl Run {
         threads: usize,
     ) -> PyResult<bool> {
         let part = Shard::new(number, of);
-        let part = part.map_err(|error| Failed::from(Failure::User(error.to_string())))?;
+        let part = part.map_err(|error| PyFailure::from(Failure::User(error.to_string())))?;
         Job::pooled(None, threads).run(py, |stop| {
             let done = self.batch.run_into(&folder, part, &|| stop.count(1));
             Ok(done.map_err(Failure::from)?.stored)

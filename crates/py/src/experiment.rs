@@ -1,6 +1,6 @@
 //! Experiments: read, looked into, changed, pickled.
 
-use crate::failure::Failed;
+use crate::failure::PyFailure;
 use hertzchain::failure::Failure;
 use hertzchain_experiment as experiment;
 use hertzchain_experiment::Units;
@@ -51,7 +51,7 @@ impl Experiment {
         Self { inner, changes: Vec::new() }
     }
 
-    fn changed(&self, change: ExperimentChange) -> Result<Self, Failed> {
+    fn changed(&self, change: ExperimentChange) -> Result<Self, PyFailure> {
         let inner = match &change {
             ExperimentChange::Numbers(values) => {
                 let values: Vec<_> = values.iter().map(|(path, v)| (path.as_str(), *v)).collect();
@@ -93,7 +93,7 @@ impl Experiment {
     /// -------
     /// Experiment
     #[staticmethod]
-    fn open(path: std::path::PathBuf) -> Result<Self, Failed> {
+    fn open(path: std::path::PathBuf) -> Result<Self, PyFailure> {
         Ok(Self::read(experiment::Experiment::open(path)?))
     }
 
@@ -108,7 +108,7 @@ impl Experiment {
     /// -------
     /// Experiment
     #[staticmethod]
-    fn from_text(name: &str, text: &str) -> Result<Self, Failed> {
+    fn from_text(name: &str, text: &str) -> Result<Self, PyFailure> {
         Ok(Self::read(experiment::Experiment::from_text(name, text)?))
     }
 
@@ -123,7 +123,7 @@ impl Experiment {
     /// -------
     /// Experiment
     #[staticmethod]
-    fn from_tables(name: &str, tables: &str) -> Result<Self, Failed> {
+    fn from_tables(name: &str, tables: &str) -> Result<Self, PyFailure> {
         let wrong = |error: &dyn std::fmt::Display| {
             Failure::User(format!("an experiment holds texts, numbers, lists and dicts: {error}"))
         };
@@ -148,12 +148,16 @@ impl Experiment {
     /// OptionError
     ///     A name that no preset has.
     #[staticmethod]
-    fn preset(name: &str) -> Result<Self, Failed> {
+    fn preset(name: &str) -> Result<Self, PyFailure> {
         Ok(Self::read(experiment::preset(name)?))
     }
 
     #[staticmethod]
-    fn _restored(name: &str, text: &str, changes: Vec<ExperimentChange>) -> Result<Self, Failed> {
+    fn _restored(
+        name: &str,
+        text: &str,
+        changes: Vec<ExperimentChange>,
+    ) -> Result<Self, PyFailure> {
         let read = Self::from_text(name, text)?;
         let mut changes = changes.into_iter();
         changes.try_fold(read, |experiment, change| experiment.changed(change))
@@ -248,7 +252,7 @@ impl Experiment {
     /// ------
     /// OptionError
     ///     A path that is no number's, or several'.
-    fn get(&self, path: &str) -> Result<f64, Failed> {
+    fn get(&self, path: &str) -> Result<f64, PyFailure> {
         Ok(self.inner.get(path)?)
     }
 
@@ -300,7 +304,7 @@ impl Experiment {
     /// ------
     /// OptionError
     ///     A name that no case has.
-    fn case(&self, name: &str) -> Result<Self, Failed> {
+    fn case(&self, name: &str) -> Result<Self, PyFailure> {
         self.changed(ExperimentChange::Case(name.to_owned()))
     }
 

@@ -11,16 +11,16 @@ use pyo3::types::PyDict;
 const ERRORS: &str = "hertzchain.errors";
 
 /// A failure on its way to Python.
-pub struct Failed(Failure);
+pub struct PyFailure(Failure);
 
-impl<E: Into<Failure>> From<E> for Failed {
+impl<E: Into<Failure>> From<E> for PyFailure {
     fn from(error: E) -> Self {
         Self(error.into())
     }
 }
 
-impl From<Failed> for PyErr {
-    fn from(Failed(failure): Failed) -> Self {
+impl From<PyFailure> for PyErr {
+    fn from(PyFailure(failure): PyFailure) -> Self {
         Python::attach(|py| match raised(py, &failure) {
             Ok(error) => Self::from_value(error),
             Err(error) => error,

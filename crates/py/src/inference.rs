@@ -1,7 +1,7 @@
 //! From times of flight to contacts.
 
 use crate::experiment::Experiment;
-use crate::failure::Failed;
+use crate::failure::PyFailure;
 use crate::job::Job;
 use crate::json;
 use crate::options::parsed;
@@ -65,7 +65,7 @@ fn found<'py>(
 #[pyfunction]
 pub(crate) fn is_table(path: PathBuf, with_options_of_recordings: bool) -> PyResult<bool> {
     let found = hertzchain::inference::is_table(&path, with_options_of_recordings);
-    Ok(found.map_err(Failed::from)?)
+    Ok(found.map_err(PyFailure::from)?)
 }
 
 /// Contact parameters from whole pulses of recordings.

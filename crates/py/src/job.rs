@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::{Builder, Result as Joined, scope};
 use std::time::Duration;
 
-use crate::failure::Failed;
+use crate::failure::PyFailure;
 
 /// How often Python is asked for signals, and progress is reported.
 const LOOK: Duration = Duration::from_millis(20);
@@ -107,7 +107,7 @@ impl<'py> Job<'py> {
         let look = || Python::attach(|py| py.check_signals()).and_then(|()| report());
         let outcome = py.detach(|| compute(&stop, threads, &look))?;
         report()?;
-        Ok(outcome.map_err(Failed::from)?)
+        Ok(outcome.map_err(PyFailure::from)?)
     }
 }
 

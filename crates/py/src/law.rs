@@ -2,7 +2,7 @@
 
 use hertzchain::failure::Failure;
 use hertzchain_chain::laws::{Closed, Columns, Contacts, Law, LawError, LawInfo, Nature};
-use hertzchain_chain::material::Pair;
+use hertzchain_chain::material::BeadPair;
 use hertzchain_chain::{Chain, InstructionSet, Section};
 use hertzchain_sim::Stop;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
@@ -114,7 +114,7 @@ impl Law for OfPython {
         self.info
     }
 
-    fn coefficients(&self, _pair: &Pair) -> Result<Vec<f64>, LawError> {
+    fn coefficients(&self, _pair: &BeadPair) -> Result<Vec<f64>, LawError> {
         Ok(Vec::new())
     }
 

@@ -1,6 +1,6 @@
 //! Options of the verbs, as declared for the command line.
 
-use crate::failure::Failed;
+use crate::failure::PyFailure;
 use clap::{Arg, ArgAction, Args, Command};
 use hertzchain::failure::Failure;
 use hertzchain::options::{
@@ -32,7 +32,7 @@ const COMMAND_LINE: [&str; 15] = [
 pub(crate) fn parsed<A: Args + DeserializeOwned>(
     verb: &'static str,
     options: &str,
-) -> Result<A, Failed> {
+) -> Result<A, PyFailure> {
     let options = serde_json::from_str(options);
     let options = options.map_err(|error| Failure::User(format!("{verb}: {error}")))?;
     Ok(from_json(verb, options)?)

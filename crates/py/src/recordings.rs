@@ -1,7 +1,7 @@
 //! Recordings: made on a virtual rig, and measured.
 
 use crate::experiment::Experiment;
-use crate::failure::Failed;
+use crate::failure::PyFailure;
 use crate::job::Job;
 use crate::json;
 use crate::options::parsed;
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 
 /// How many series a campaign has.
 #[pyfunction]
-pub(crate) fn campaign_series(experiment: &Experiment, options: &str) -> Result<usize, Failed> {
+pub(crate) fn campaign_series(experiment: &Experiment, options: &str) -> Result<usize, PyFailure> {
     let options: CampaignOptions = parsed("campaign", options)?;
     Ok(PreparedCampaign::new(&experiment.inner, &options)?.plan.series.len())
 }

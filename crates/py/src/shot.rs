@@ -1,7 +1,7 @@
 //! One shot.
 
 use crate::experiment::Experiment;
-use crate::failure::{Failed, finding};
+use crate::failure::{PyFailure, finding};
 use crate::job::Job;
 use crate::json;
 use crate::law::{Force, Replacing};
@@ -72,13 +72,13 @@ pub(crate) fn shot<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let options: ShotOptions = parsed("shot", options)?;
-    let mut prepared = PreparedShot::new(&experiment.inner, &options).map_err(Failed::from)?;
+    let mut prepared = PreparedShot::new(&experiment.inner, &options).map_err(PyFailure::from)?;
     let job = Job::of_steps(progress);
     let replacing = Replacing::of(&forces, &job.stop);
-    replacing.put_into(&mut prepared.plan.chain).map_err(Failed::from)?;
+    replacing.put_into(&mut prepared.plan.chain).map_err(PyFailure::from)?;
     prepared.plan.budget = replacing.have_energy();
     if let Some((asked, interval_s)) = watch {
-        let sensors = sensors(experiment, &asked).map_err(Failed::from)?;
+        let sensors = sensors(experiment, &asked).map_err(PyFailure::from)?;
         prepared.plan = prepared.plan.watching(sensors, interval_s);
     }
     let computed = job.run(py, |_| prepared.run());

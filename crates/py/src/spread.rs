@@ -1,7 +1,7 @@
 //! A posterior whose likelihoods are computed on other machines, in batches.
 
 use crate::experiment::Experiment;
-use crate::failure::Failed;
+use crate::failure::PyFailure;
 use crate::inference::{Found, Table, left, posed};
 use crate::job::Job;
 use crate::options::parsed;
@@ -33,14 +33,14 @@ pub struct Likelihood {
 #[derive(FromPyObject, IntoPyObject)]
 enum SpreadOutcome {
     Residuals(Vec<f64>, Vec<f64>),
-    Failed(String),
+    PyFailure(String),
 }
 
 impl From<Result<Residuals, ModelError>> for SpreadOutcome {
     fn from(outcome: Result<Residuals, ModelError>) -> Self {
         match outcome {
             Ok(found) => Self::Residuals(found.standardised, found.ln_sigmas),
-            Err(ModelError(why)) => Self::Failed(why),
+            Err(ModelError(why)) => Self::PyFailure(why),
         }
     }
 }
@@ -51,7 +51,7 @@ impl From<SpreadOutcome> for Result<Residuals, ModelError> {
             SpreadOutcome::Residuals(standardised, ln_sigmas) => {
                 Ok(Residuals { standardised, ln_sigmas })
             }
-            SpreadOutcome::Failed(why) => Err(ModelError(why)),
+            SpreadOutcome::PyFailure(why) => Err(ModelError(why)),
         }
     }
 }
@@ -60,7 +60,7 @@ impl From<SpreadOutcome> for Result<Residuals, ModelError> {
 impl Likelihood {
     #[new]
     #[pyo3(signature = (table, experiment, options))]
-    fn new(table: Table, experiment: &Experiment, options: String) -> Result<Self, Failed> {
+    fn new(table: Table, experiment: &Experiment, options: String) -> Result<Self, PyFailure> {
         let arguments: Fit = parsed("fit", &options)?;
         Ok(Self {
             inner: posed(&table, experiment, &arguments)?,
@@ -91,7 +91,7 @@ impl Likelihood {
         let wanted = self.inner.parameters().len();
         if points.iter().any(|point| point.len() != wanted) {
             let text = format!("every point has {wanted} numbers, one a free parameter");
-            return Err(Failed::from(Failure::User(text)).into());
+            return Err(PyFailure::from(Failure::User(text)).into());
         }
         Job::pooled(None, 1).run(py, |_| {
             let found = self.inner.residuals(&points);
@@ -132,7 +132,7 @@ impl Elsewhere {
         let waiting = Python::attach(|py| self.compute.call1(py, (named,)))?;
         loop {
             if stopped() {
-                return Err(Failed::from(Failure::User(StudyError::Stopped.to_string())).into());
+                return Err(PyFailure::from(Failure::User(StudyError::Stopped.to_string())).into());
             }
             let found = Python::attach(|py| {
                 let found = waiting.call1(py, (WAIT_S,))?;

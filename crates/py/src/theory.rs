@@ -1,7 +1,7 @@
 //! What is known without a shot: descriptions, theory, laws.
 
 use crate::experiment::Experiment;
-use crate::failure::{Failed, finding};
+use crate::failure::{PyFailure, finding};
 use crate::job::Job;
 use crate::json;
 use crate::options::parsed;
@@ -54,7 +54,7 @@ pub(crate) fn theory<'py>(
 #[pyfunction]
 #[pyo3(signature = (name))]
 pub(crate) fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
-    let infos = hertzchain::laws::infos(name).map_err(Failed::from)?;
+    let infos = hertzchain::laws::infos(name).map_err(PyFailure::from)?;
     json::object(py, &hertzchain::laws::json(&infos))
 }
 
@@ -77,5 +77,5 @@ pub(crate) fn laws<'py>(py: Python<'py>, name: Option<&str>) -> PyResult<Bound<'
 /// What must be the same on all machines: docs/how-to/many-machines.md.
 #[pyfunction]
 pub(crate) fn instruction_set() -> PyResult<&'static str> {
-    Ok(hertzchain::instruction_set().map_err(Failed::from)?.name())
+    Ok(hertzchain::instruction_set().map_err(PyFailure::from)?.name())
 }

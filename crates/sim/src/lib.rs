@@ -36,17 +36,19 @@ mod speeds;
 mod stop;
 mod tracker;
 
-pub use batch::{Batch, BatchOptions, BatchResult, BatchShot, ErrorControl};
-pub use calibration::Calibration;
-pub use describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit};
-pub use engine::{Control, LONGER_STEPS, run_plans};
-pub use error::StudyError;
-pub use fingerprint::{Fingerprint, Inputs, commit};
+pub use self::{
+    batch::{Batch, BatchOptions, BatchResult, BatchShot, ErrorControl},
+    calibration::Calibration,
+    describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit},
+    engine::{Control, LONGER_STEPS, run_plans},
+    error::StudyError,
+    fingerprint::{Fingerprint, Inputs, commit},
+    long_work::Expected,
+    plan::{Pick, Plan, PreparedChain, Solver, Watch},
+    result::{COLUMNS, Column, Failed, Law, Rows, WarningSummary},
+    shard::{Shard, StoredShard},
+    shot::{Flight, OF_PEAKS, Rebound, Shot, shoot, shoot_checked, shoot_estimated},
+    speeds::{parse_speed, parse_speeds, parse_time},
+    stop::{Stop, count_done, note_progress, pool, stopped},
+};
 pub use hertzchain_chain::InstructionSet;
-pub use long_work::Expected;
-pub use plan::{Pick, Plan, PreparedChain, Solver, Watch};
-pub use result::{COLUMNS, Column, Failed, Law, Rows, WarningSummary};
-pub use shard::{Shard, StoredShard};
-pub use shot::{Flight, OF_PEAKS, Rebound, Shot, shoot, shoot_checked, shoot_estimated};
-pub use speeds::{parse_speed, parse_speeds, parse_time};
-pub use stop::{Stop, count_done, note_progress, pool, stopped};

@@ -27,5 +27,7 @@ mod touch;
 mod weights;
 mod window;
 
-pub use fire::{LaneResult, Precision, Settings, Shot, fire, fire_each};
-pub use passing::End;
+pub use self::{
+    fire::{LaneResult, Precision, Settings, Shot, fire, fire_each},
+    passing::End,
+};

@@ -1,5 +1,5 @@
 use super::{Closed, DampingViscoelastic, LawError, LawInfo, Nature, Term};
-use crate::material::{Material, Pair};
+use crate::material::{BeadPair, Material};
 
 /// Viscoelastic spheres as first derived [Brilliantov1996]: the same form as
 /// the later law, another A.
@@ -26,7 +26,7 @@ impl Term<1> for DampingBrilliantov1996 {
         Self { relaxation_time_s: values[0], stiffness: values[1] }
     }
 
-    fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 1], LawError> {
         let time = self
             .relaxation_time_s
             .unwrap_or_else(|| pair.mean_relaxation_time_s(Material::relaxation_time_1996_s));

@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// Cubic in the overlap rate [Labbe2017]: F = B δ̇³ while in contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Term<1> for DampingCubic {
         Self { coefficient_kg_s_m2: values[0].unwrap_or(f64::NAN) }
     }
 
-    fn coefficients(&self, _pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, _pair: &BeadPair) -> Result<[f64; 1], LawError> {
         Ok([self.coefficient_kg_s_m2])
     }
 

@@ -1,5 +1,5 @@
 use super::{Closed, DampingCubic, LawError, LawInfo, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// Cubic in the overlap rate [Labbe2017]: F = B δ̇³ whether or not in contact,
 /// as one reading of the equation with its rate kept when a contact opens.
@@ -19,7 +19,7 @@ impl Term<1> for DampingCubicUngated {
         Self(DampingCubic::new(values))
     }
 
-    fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 1], LawError> {
         self.0.coefficients(pair)
     }
 

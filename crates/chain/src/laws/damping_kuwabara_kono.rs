@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// Viscoelastic spheres with a measured coefficient [KuwabaraKono1987]:
 /// F = γ √δ δ̇.
@@ -30,7 +30,7 @@ impl Term<1> for DampingKuwabaraKono {
         Self { coefficient: values[0].unwrap_or(f64::NAN) }
     }
 
-    fn coefficients(&self, _pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, _pair: &BeadPair) -> Result<[f64; 1], LawError> {
         Ok([self.coefficient])
     }
 

@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// Linear dashpot while in contact: F = c δ̇ [CundallStrack1979].
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Term<1> for DampingLinear {
         Self { coefficient_n_s_m: values[0].unwrap_or(f64::NAN) }
     }
 
-    fn coefficients(&self, _pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, _pair: &BeadPair) -> Result<[f64; 1], LawError> {
         Ok([self.coefficient_n_s_m])
     }
 

@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// Power-law damping [CarreteroGonzalez2009], with a power of the overlap as
 /// well: F = c δ^p |δ̇|^q sgn δ̇.
@@ -53,7 +53,7 @@ impl Term<3> for DampingPower {
         Self { coefficient: value(0), rate_exponent: value(1), overlap_exponent: value(2) }
     }
 
-    fn coefficients(&self, _pair: &Pair) -> Result<[f64; 3], LawError> {
+    fn coefficients(&self, _pair: &BeadPair) -> Result<[f64; 3], LawError> {
         Ok([self.coefficient, self.rate_exponent, self.overlap_exponent])
     }
 

@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// Damping that gives a restitution independent of speed on a Hertz contact
 /// [Tsuji1992]: F = α √(m* K) δ^{1/4} δ̇.
@@ -41,7 +41,7 @@ impl Term<1> for DampingTsuji {
         Self { damping_ratio: values[0].unwrap_or(f64::NAN), stiffness: values[1] }
     }
 
-    fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 1], LawError> {
         let stiffness = self.stiffness.unwrap_or_else(|| pair.hertz_stiffness());
         Ok([self.damping_ratio * (pair.mass_kg * stiffness).sqrt()])
     }

@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::{Material, Pair};
+use crate::material::{BeadPair, Material};
 
 /// Viscoelastic spheres [Goldobin2015]: F = (3/2) A K √δ δ̇.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Term<1> for DampingViscoelastic {
         Self { relaxation_time_s: values[0], stiffness: values[1] }
     }
 
-    fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 1], LawError> {
         let time = self
             .relaxation_time_s
             .unwrap_or_else(|| pair.mean_relaxation_time_s(Material::relaxation_time_s));

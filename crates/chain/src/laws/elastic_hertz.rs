@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// Elastic spheres [Hertz1881]: F = K δ^{3/2}, K in N/m^{3/2}.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Term<1> for ElasticHertz {
         Self { stiffness: values[0] }
     }
 
-    fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 1], LawError> {
         let stiffness = self.stiffness.unwrap_or_else(|| pair.hertz_stiffness());
         Ok([stiffness])
     }

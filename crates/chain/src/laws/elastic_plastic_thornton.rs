@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 use std::f64::consts::PI;
 
 /// Elastic, then perfectly plastic loading, elastic unloading with a flatter
@@ -37,7 +37,7 @@ impl Term<5> for ElasticPlasticThornton {
         Self { yield_pressure_pa: values[0].unwrap_or(f64::NAN) }
     }
 
-    fn coefficients(&self, pair: &Pair) -> Result<[f64; 5], LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 5], LawError> {
         let compliance = pair.left.compliance_per_pa() + pair.right.compliance_per_pa();
         let modulus = compliance.recip();
         let yield_overlap = pair.radius_m * (PI * self.yield_pressure_pa / (2.0 * modulus)).powi(2);

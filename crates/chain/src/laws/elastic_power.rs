@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// General elastic exponent: F = k δ^n; n = 1 is the linear chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl Term<2> for ElasticPower {
         Self { stiffness: values[0].unwrap_or(f64::NAN), exponent: values[1].unwrap_or(f64::NAN) }
     }
 
-    fn coefficients(&self, _pair: &Pair) -> Result<[f64; 2], LawError> {
+    fn coefficients(&self, _pair: &BeadPair) -> Result<[f64; 2], LawError> {
         Ok([self.stiffness, self.exponent])
     }
 

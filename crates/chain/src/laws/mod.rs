@@ -18,20 +18,22 @@ mod elastic_plastic_thornton;
 mod elastic_power;
 mod term;
 
-pub use damping_brilliantov_1996::DampingBrilliantov1996;
-pub use damping_cubic::DampingCubic;
-pub use damping_cubic_ungated::DampingCubicUngated;
-pub use damping_kuwabara_kono::DampingKuwabaraKono;
-pub use damping_linear::DampingLinear;
-pub use damping_power::DampingPower;
-pub use damping_tsuji::DampingTsuji;
-pub use damping_viscoelastic::DampingViscoelastic;
-pub use elastic_hertz::ElasticHertz;
-pub use elastic_plastic_thornton::ElasticPlasticThornton;
-pub use elastic_power::ElasticPower;
-pub use term::{
-    Closed, Columns, Contacts, Law, LawError, LawInfo, Nature, Parameter, Row, Source, Term, law,
-    row,
+pub use self::{
+    damping_brilliantov_1996::DampingBrilliantov1996,
+    damping_cubic::DampingCubic,
+    damping_cubic_ungated::DampingCubicUngated,
+    damping_kuwabara_kono::DampingKuwabaraKono,
+    damping_linear::DampingLinear,
+    damping_power::DampingPower,
+    damping_tsuji::DampingTsuji,
+    damping_viscoelastic::DampingViscoelastic,
+    elastic_hertz::ElasticHertz,
+    elastic_plastic_thornton::ElasticPlasticThornton,
+    elastic_power::ElasticPower,
+    term::{
+        Closed, Columns, Contacts, Law, LawError, LawInfo, Nature, Parameter, Row, Source, Term,
+        law, row,
+    },
 };
 
 /// Every contact law, in the order in which the tools list them.

@@ -2,7 +2,7 @@
 //! [`Law`], which the wave loop calls.
 
 use crate::instruction_set::InstructionSet;
-use crate::material::Pair;
+use crate::material::BeadPair;
 use fearless_simd::{dispatch, prelude::*};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -118,7 +118,7 @@ pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
     ///
     /// # Errors
     /// When the materials lack what the law needs.
-    fn coefficients(&self, pair: &Pair) -> Result<[f64; C], LawError>;
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; C], LawError>;
 
     /// Force in N, positive when it pushes the bodies apart.
     fn force(k: &[f64; C], contact: Closed) -> f64;
@@ -208,7 +208,7 @@ pub trait Law: Debug + Send + Sync {
     ///
     /// # Errors
     /// When the materials lack what the law needs.
-    fn coefficients(&self, pair: &Pair) -> Result<Vec<f64>, LawError>;
+    fn coefficients(&self, pair: &BeadPair) -> Result<Vec<f64>, LawError>;
 
     /// How many coefficients there are.
     fn width(&self) -> usize;
@@ -258,7 +258,7 @@ impl<T: Term<C>, const C: usize> Law for Of<T, C> {
         const { &T::INFO }
     }
 
-    fn coefficients(&self, pair: &Pair) -> Result<Vec<f64>, LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<Vec<f64>, LawError> {
         let k = self.0.coefficients(pair)?;
         match k.iter().all(|value| value.is_finite() && *value >= 0.0) {
             true => Ok(k.to_vec()),

@@ -5,9 +5,13 @@ mod separation;
 mod signal;
 mod tracer;
 
+pub use self::{
+    passage::{Competing, Flank, Passage, PassageError, Passages, Pulse, RETURN_WITHIN},
+    separation::{Apart, Separation},
+};
+pub use self::{
+    signal::{Maximum, Shape, Signal, Stretch},
+    tracer::{Trace, Tracer},
+};
 pub(crate) use passage::WALL_WITHIN;
-pub use passage::{Competing, Flank, Passage, PassageError, Passages, Pulse, RETURN_WITHIN};
-pub use separation::{Apart, Separation};
 pub(crate) use signal::{LEAST_SHARE, least_n_s};
-pub use signal::{Maximum, Shape, Signal, Stretch};
-pub use tracer::{Trace, Tracer};

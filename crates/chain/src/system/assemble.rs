@@ -6,13 +6,13 @@ use super::statics::{elastic_force, static_overlap};
 use super::{Scales, SectionColumns, Spring, System, TermColumns};
 use crate::chain::{Chain, ChainError, FarEnd, Push, Section, Start};
 use crate::laws::{Columns, Law, Nature};
-use crate::material::Pair;
+use crate::material::BeadPair;
 use std::ops::Range;
 use std::sync::Arc;
 
 pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     check_values(chain)?;
-    let pairs: Vec<Option<Pair>> = (0..=chain.beads.len()).map(|c| chain.pair(c)).collect();
+    let pairs: Vec<Option<BeadPair>> = (0..=chain.beads.len()).map(|c| chain.pair(c)).collect();
     let (sections, section_of) = sections(chain, &pairs)?;
     let driven = matches!(chain.start, Start::Driven { .. });
     let mut system = System {
@@ -72,7 +72,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
 /// Sections in order with their columns, and the section of every contact.
 fn sections(
     chain: &Chain,
-    pairs: &[Option<Pair>],
+    pairs: &[Option<BeadPair>],
 ) -> Result<(Vec<SectionColumns>, Vec<u32>), ChainError> {
     let mut ordered: Vec<&Section> = chain.sections.iter().collect();
     ordered.sort_by_key(|section| *section.contacts.start());
@@ -99,7 +99,7 @@ fn sections(
 
 fn section_columns(
     section: &Section,
-    pairs: &[Option<Pair>],
+    pairs: &[Option<BeadPair>],
 ) -> Result<SectionColumns, ChainError> {
     let contacts = *section.contacts.start()..*section.contacts.end() + 1;
     let (mut gated, mut ungated) = (Vec::new(), Vec::new());
@@ -114,7 +114,7 @@ fn section_columns(
 /// A law's coefficients over contacts; neighbours that join alike are asked once.
 fn columns(
     law: &Arc<dyn Law>,
-    pairs: &[Option<Pair>],
+    pairs: &[Option<BeadPair>],
     contacts: Range<usize>,
 ) -> Result<Columns, ChainError> {
     let (mut runs, mut contact) = (Vec::new(), contacts.start);
@@ -131,7 +131,11 @@ fn columns(
     Ok(Columns::from_runs(rows))
 }
 
-fn coefficients(law: &Arc<dyn Law>, pair: &Pair, contact: usize) -> Result<Vec<f64>, ChainError> {
+fn coefficients(
+    law: &Arc<dyn Law>,
+    pair: &BeadPair,
+    contact: usize,
+) -> Result<Vec<f64>, ChainError> {
     law.coefficients(pair).map_err(|error| ChainError::Law { contact, error })
 }
 
@@ -170,7 +174,11 @@ fn loads(chain: &Chain, system: &System) -> Vec<f64> {
     loads
 }
 
-fn settle(chain: &Chain, pairs: &[Option<Pair>], system: &mut System) -> Result<(), ChainError> {
+fn settle(
+    chain: &Chain,
+    pairs: &[Option<BeadPair>],
+    system: &mut System,
+) -> Result<(), ChainError> {
     let loads = loads(chain, system);
     let alike =
         |b: usize, c: usize| pairs[b] == pairs[c] && system.section_of[b] == system.section_of[c];

@@ -13,7 +13,7 @@ pub use statics::StaticContact;
 
 use crate::chain::{Chain, ChainError, Tension};
 use crate::laws::{Columns, Law};
-use crate::material::Pair;
+use crate::material::BeadPair;
 use crate::motion::Motion;
 use crate::sensor::Sensor;
 use std::ops::Range;
@@ -99,7 +99,7 @@ pub struct System {
     pub(crate) scales: Scales,
     /// Contacts unlike their left neighbours with what they join: the scales
     /// of another speed follow from them.
-    kinds: Arc<[(usize, Pair)]>,
+    kinds: Arc<[(usize, BeadPair)]>,
 }
 
 impl System {

@@ -1,18 +1,18 @@
 //! The two bodies of every contact.
 
 use crate::chain::{Bead, Chain, FarEnd, Start};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// Radius of a plane and mass of a body that does not move.
 const ENDLESS: f64 = f64::INFINITY;
 
 impl Chain {
     /// What a contact's laws know of its two bodies; `None` where one is missing.
-    pub fn pair(&self, contact: usize) -> Option<Pair> {
+    pub fn pair(&self, contact: usize) -> Option<BeadPair> {
         let (left, right) = (self.body(contact)?, self.body(contact + 1)?);
         let section = self.sections.iter().find(|section| section.contacts.contains(&contact));
         let material = section.and_then(|section| section.material);
-        Some(Pair {
+        Some(BeadPair {
             left: material.unwrap_or(left.material),
             right: material.unwrap_or(right.material),
             radius_m: reduced(left.radius_m, right.radius_m),

@@ -2,11 +2,11 @@
 
 use super::statics::shorter_time;
 use super::{Scales, System};
-use crate::material::Pair;
+use crate::material::BeadPair;
 
 /// The speed that moves the chain and the shortest time in which a pair of
 /// its bodies turns round at that speed.
-pub(super) fn scales(system: &System, kinds: &[(usize, Pair)]) -> Scales {
+pub(super) fn scales(system: &System, kinds: &[(usize, BeadPair)]) -> Scales {
     let speed = characteristic_speed(system);
     let time = shortest_time(system, kinds, speed);
     let time_s = if time.is_finite() && time > 0.0 { time } else { 1.0 };
@@ -23,7 +23,7 @@ pub(super) fn scales(system: &System, kinds: &[(usize, Pair)]) -> Scales {
 }
 
 /// Contacts with what they join, of equal neighbours the first.
-pub(super) fn kinds(system: &System, pairs: &[Option<Pair>]) -> Vec<(usize, Pair)> {
+pub(super) fn kinds(system: &System, pairs: &[Option<BeadPair>]) -> Vec<(usize, BeadPair)> {
     let kind = |c: usize| (pairs[c], system.section_of[c], system.offset_m[c]);
     (0..pairs.len())
         .filter(|&c| c == 0 || kind(c) != kind(c - 1))
@@ -31,7 +31,7 @@ pub(super) fn kinds(system: &System, pairs: &[Option<Pair>]) -> Vec<(usize, Pair
         .collect()
 }
 
-fn shortest_time(system: &System, kinds: &[(usize, Pair)], speed_m_s: f64) -> f64 {
+fn shortest_time(system: &System, kinds: &[(usize, BeadPair)], speed_m_s: f64) -> f64 {
     kinds.iter().fold(f64::INFINITY, |shortest, (c, pair)| {
         let mass_kg = match pair.mass_kg.is_finite() {
             true => pair.mass_kg,
@@ -45,7 +45,7 @@ fn shortest_time(system: &System, kinds: &[(usize, Pair)], speed_m_s: f64) -> f6
 /// they lose, so the wave is nowhere slower than the heaviest body so far with the
 /// momentum of the start; a contact takes the time in which it stops such a body at
 /// that speed, which goes as the speed to −1/5, and a gap is crossed at it.
-fn crossing_s(system: &System, kinds: &[(usize, Pair)], least_n_s: f64) -> f64 {
+fn crossing_s(system: &System, kinds: &[(usize, BeadPair)], least_n_s: f64) -> f64 {
     let momentum = match system.has_striker {
         true => system.mass_kg[0] * system.velocity_m_s[0].abs(),
         false => least_n_s,

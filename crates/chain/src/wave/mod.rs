@@ -20,12 +20,16 @@ mod verlet;
 mod window;
 mod zones;
 
-pub use dense::Piece;
-pub use energy::{Budget, Dissipated};
+pub use self::{
+    dense::Piece,
+    energy::{Budget, Dissipated},
+};
+pub use self::{
+    outcome::{Flow, Limits, Observer, Outcome, SolveError, Work},
+    run::run,
+    table::Table,
+};
 pub(crate) use gate::bracketed_root;
-pub use outcome::{Flow, Limits, Observer, Outcome, SolveError, Work};
-pub use run::run;
-pub use table::Table;
 
 /// How a method chooses its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

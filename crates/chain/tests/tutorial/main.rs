@@ -12,7 +12,7 @@ mod material {
 }
 
 use common::{close, row, shoot};
-use hertzchain_chain::{Chain, Pair};
+use hertzchain_chain::{BeadPair, Chain};
 use laws::{Closed, Columns, ElasticCone, LAWS, Row, law};
 
 #[test]
@@ -39,8 +39,12 @@ fn words(code: &str) -> String {
 
 #[test]
 fn cone_pushes_with_the_slope_of_its_energy() {
-    let steel =
-        Pair { left: common::STEEL, right: common::STEEL, radius_m: 3.175e-3, mass_kg: 4.27e-3 };
+    let steel = BeadPair {
+        left: common::STEEL,
+        right: common::STEEL,
+        radius_m: 3.175e-3,
+        mass_kg: 4.27e-3,
+    };
     let cone = law(ElasticCone { slope: 0.02 });
     let k = Columns::from_rows(&[cone.coefficients(&steel).unwrap()]);
     let (overlap, step) = (2e-6, 2e-9);

@@ -9,8 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use hertzchain_figures::{
-    Animation, Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, RigDrawing, RigEnd, Series,
-    Verdict, VerdictMatrix,
+    Animation, Chart, ClaimVerdict, Colour, ColourMap, Dash, Figure, HeatMap, Marker, RigDrawing,
+    RigEnd, Series, VerdictMatrix,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -261,12 +261,12 @@ const CLAIMS: [&str; 8] = [
     "Model and signals overlap at the peaks",
 ];
 
-fn verdict(i: usize) -> Verdict {
+fn verdict(i: usize) -> ClaimVerdict {
     match (i * i + i / 3) % 7 {
-        0 | 1 | 4 => Verdict::Holds,
-        2 => Verdict::InPart,
-        3 => Verdict::NotDecidable,
-        _ => Verdict::Fails,
+        0 | 1 | 4 => ClaimVerdict::Holds,
+        2 => ClaimVerdict::InPart,
+        3 => ClaimVerdict::NotDecidable,
+        _ => ClaimVerdict::Fails,
     }
 }
 
@@ -291,7 +291,7 @@ fn verdicts_many() -> Figure {
 
 fn claims_table(columns: &[&str]) -> Figure {
     let row = |table: VerdictMatrix, (i, claim): (usize, &&str)| {
-        let cells: Vec<Verdict> = (0..columns.len()).map(|c| verdict(i + 3 * c)).collect();
+        let cells: Vec<ClaimVerdict> = (0..columns.len()).map(|c| verdict(i + 3 * c)).collect();
         table.row(claim, &cells)
     };
     CLAIMS.iter().enumerate().fold(VerdictMatrix::new(columns), row).figure()

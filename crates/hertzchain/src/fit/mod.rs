@@ -9,12 +9,14 @@ mod results;
 mod tables;
 mod validation;
 
-pub use alternatives::{AlternativeModel, AlternativeModels, Unfitted};
-pub use checkpoint::{CHAIN, finished, leave, saved};
-pub use limits::{Limit, Limits};
-pub use more::{Curves, More, Sampled};
-pub use results::{inferred, joined, json, rows_json};
-pub use tables::{Table, of_any as tables_of_any, tables};
+pub use self::{
+    alternatives::{AlternativeModel, AlternativeModels, Unfitted},
+    checkpoint::{CHAIN, finished, leave, saved},
+    limits::{Limit, Limits},
+    more::{Curves, More, Sampled},
+    results::{inferred, joined, json, rows_json},
+    tables::{Table, of_any as tables_of_any, tables},
+};
 
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};

@@ -3,8 +3,7 @@
 mod results;
 mod tables;
 
-pub use results::json;
-pub use tables::tables;
+pub use self::{results::json, tables::tables};
 
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};

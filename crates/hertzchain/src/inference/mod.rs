@@ -4,9 +4,11 @@ mod known;
 mod reference;
 mod unit_changes;
 
-pub use known::is_meant;
-pub use reference::{references, references_json};
-pub use unit_changes::{held_loads, unit_changes};
+pub use self::{
+    known::is_meant,
+    reference::{references, references_json},
+    unit_changes::{held_loads, unit_changes},
+};
 
 use crate::failure::Failure;
 use crate::input;

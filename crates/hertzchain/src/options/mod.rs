@@ -7,21 +7,23 @@ mod measure;
 mod simulate;
 mod values;
 
+pub use self::{
+    given::{Given, check_speeds},
+    infer::{
+        CurveOptions, DesignOptions, Filter, FitOptions, GaugeOptions, Method, ModelOptions,
+        ParameterOptions, RecordOptions, WetForm, What,
+    },
+    measure::{MeasureOptions, MethodName, PickOptions, ReadingOptions, RowsAre, Way},
+    simulate::{
+        CampaignOptions, CheckOptions, ErrorControl, Input, Pick, ShotOptions, SimulationOptions,
+        Solver, SweepOptions,
+    },
+    values::{
+        Accuracy, Against, Assignment, Corner, Cost, Count, ErrorShots, Few, Frequency, Positive,
+        Preload, Share, Speed, Threads, Time, TimeUnit, Voltage, WayKind,
+    },
+};
 pub(crate) use given::has_unit;
-pub use given::{Given, check_speeds};
-pub use infer::{
-    CurveOptions, DesignOptions, Filter, FitOptions, GaugeOptions, Method, ModelOptions,
-    ParameterOptions, RecordOptions, WetForm, What,
-};
-pub use measure::{MeasureOptions, MethodName, PickOptions, ReadingOptions, RowsAre, Way};
-pub use simulate::{
-    CampaignOptions, CheckOptions, ErrorControl, Input, Pick, ShotOptions, SimulationOptions,
-    Solver, SweepOptions,
-};
-pub use values::{
-    Accuracy, Against, Assignment, Corner, Cost, Count, ErrorShots, Few, Frequency, Positive,
-    Preload, Share, Speed, Threads, Time, TimeUnit, Voltage, WayKind,
-};
 
 use crate::failure::Failure;
 use clap::{Arg, ArgAction, Args, Command};

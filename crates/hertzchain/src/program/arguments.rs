@@ -63,7 +63,7 @@ pub(crate) enum Verb {
     /// Print what theory says of a chain's waves
     Theory(CheckOptions),
     /// List every contact law with its equation, parameters and source
-    Laws(Laws),
+    Laws(LawsArguments),
     /// List the experiments that come with the program, or print one
     Presets(Presets),
     /// Print the JSON Schema of experiment files, for editors
@@ -109,7 +109,7 @@ pub(crate) struct Explore {
 
 /// Arguments of `laws`.
 #[derive(Debug, Args)]
-pub(crate) struct Laws {
+pub(crate) struct LawsArguments {
     /// Only this law
     pub name: Option<String>,
     /// Print JSON

@@ -24,14 +24,14 @@ pub(crate) fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str
 }
 
 /// Times in a unit that suits them.
-pub(crate) struct Clock {
+pub(crate) struct TimeAxis {
     /// Units in a second.
     pub scale: f64,
     /// Empty in a dimensionless chain.
     pub unit: &'static str,
 }
 
-impl Clock {
+impl TimeAxis {
     /// Clear for the latest of the times.
     pub(crate) fn of(times_s: &[f64], units: Units) -> Self {
         if units == Units::Dimensionless {
@@ -79,7 +79,7 @@ pub(crate) fn signals(
     (sensors, title): (&[Sensor], &str),
 ) -> Figure {
     let units = experiment.units();
-    let clock = Clock::of(&trace.time_s, units);
+    let clock = TimeAxis::of(&trace.time_s, units);
     let wall = wall(experiment);
     let times = clock.scaled(&trace.time_s);
     let panels = [("N", "Force"), ("m/s", "Velocity"), ("m", "Displacement")];
@@ -131,7 +131,7 @@ pub(crate) fn sweep(part: &BatchResult) -> Figure {
     let reflected: Vec<(f64, f64)> = reflected.collect();
     let units = part.units;
     let all = incident.iter().chain(&reflected);
-    let clock = Clock::of(&all.map(|(_, time_s)| *time_s).collect::<Vec<_>>(), units);
+    let clock = TimeAxis::of(&all.map(|(_, time_s)| *time_s).collect::<Vec<_>>(), units);
     let chart =
         Chart::new(&axis("Striker speed $v_0$", "m/s", units), &clock.label("Time of flight"));
     let chart = chart.title(&part.title).x_log().y_log();
@@ -144,7 +144,7 @@ pub(crate) fn sweep(part: &BatchResult) -> Figure {
 /// Points of one branch and the power law through them.
 fn branch(
     chart: Chart,
-    clock: &Clock,
+    clock: &TimeAxis,
     name: &str,
     flights: &[(f64, f64)],
     fit: &Result<PowerLaw, FitError>,

@@ -1,4 +1,4 @@
-use super::{BIBLIOGRAPHY, Work};
+use super::{BIBLIOGRAPHY, Publication};
 use hertzchain_chain::laws::LAWS;
 
 fn keys() -> Vec<&'static str> {
@@ -11,7 +11,7 @@ fn keys() -> Vec<&'static str> {
 fn every_entry_reads_without_a_trace_of_latex() {
     assert!(!keys().is_empty());
     for key in keys() {
-        let work = Work::of_key(key);
+        let work = Publication::of_key(key);
         assert!(work.is_some(), "{key}");
         let text = work.map(|work| work.lines().join("\n")).unwrap_or_default();
         assert!(!text.contains(['\\', '{', '}', '$', '~', '`']), "{text}");
@@ -20,7 +20,7 @@ fn every_entry_reads_without_a_trace_of_latex() {
 
 #[test]
 fn names_and_pages_are_written_as_they_are_read() {
-    let work = Work::of_key("Brilliantov1996");
+    let work = Publication::of_key("Brilliantov1996");
     let lines = work.map(|work| work.lines());
     let expected = [
         "Brilliantov, N. V.; Spahn, F.; Hertzsch, J.-M.; Pöschel, T.",
@@ -32,7 +32,7 @@ fn names_and_pages_are_written_as_they_are_read() {
 
 #[test]
 fn a_work_outside_journals_tells_where_it_is() {
-    let place = |key| Work::of_key(key).map(|work| work.lines()[2].clone());
+    let place = |key| Publication::of_key(key).map(|work| work.lines()[2].clone());
     assert_eq!(place("Nesterenko2001"), Some("Springer (2001)".to_owned()));
     assert!(place("Labbe2017").is_some_and(|place| place.contains("Santiago")));
 }
@@ -40,7 +40,7 @@ fn a_work_outside_journals_tells_where_it_is() {
 #[test]
 fn every_law_has_its_source() {
     for row in LAWS {
-        assert!(Work::of_key(row.info.reference).is_some(), "{}", row.info.name);
+        assert!(Publication::of_key(row.info.reference).is_some(), "{}", row.info.name);
     }
-    assert_eq!(Work::of_key("no user1900"), None);
+    assert_eq!(Publication::of_key("no user1900"), None);
 }

@@ -4,7 +4,7 @@ use hertzchain_chain::Material;
 #[test]
 fn pressure_and_radius_are_those_of_hertz() {
     let steel = Material::elastic(213e9, 0.3);
-    let pair = Pair { left: steel, right: steel, radius_m: 3.175e-3, mass_kg: 4.27e-3 };
+    let pair = BeadPair { left: steel, right: steel, radius_m: 3.175e-3, mass_kg: 4.27e-3 };
     let found = HertzContact::new(&pair, 10.0).unwrap();
     // a³ = 3 F R*/(4 E*) and p₀³ = 6 F E*²/(π³ R*²), E* = Y/(2 (1 − ν²)).
     let modulus = 213e9 / (2.0 * 0.91);

@@ -13,11 +13,15 @@ mod surrogate;
 mod units;
 mod whiten;
 
-pub use advice::{Advice, Prospect};
-pub use band::FitCurve;
-pub use candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, ways};
-pub use joint::{Joint, Part, Supply};
+pub use self::{
+    advice::{Advice, Prospect},
+    band::FitCurve,
+    candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, ways},
+    joint::{Joint, Part, Supply},
+};
+pub use self::{
+    model::{Model, Predicted, Speeds},
+    problem::CurveProblem,
+    surrogate::Surrogate,
+};
 pub(crate) use model::Shooting;
-pub use model::{Model, Predicted, Speeds};
-pub use problem::CurveProblem;
-pub use surrogate::Surrogate;

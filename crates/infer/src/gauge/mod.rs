@@ -9,10 +9,12 @@ mod oils;
 mod rows;
 mod scan;
 
-pub use form::{AtSpeed, LAWS, PowerForm};
-pub use oils::{Description, Oil, OilLaw, known_oils, oils};
-pub use rows::{Branch, Combination, Contact, Pair, WetRow, is_determined};
-pub use scan::Scan;
+pub use self::{
+    form::{AtSpeed, LAWS, PowerForm},
+    oils::{Description, Oil, OilLaw, known_oils, oils},
+    rows::{Branch, Combination, Contact, Pair, WetRow, is_determined},
+    scan::Scan,
+};
 
 use crate::curve::{CurveProblem, Joint, Model, Part, Supply};
 use crate::data::{Data, Observable};

@@ -3,7 +3,7 @@
 use crate::InferError;
 use crate::data::with_plain_ends;
 use csv::{ReaderBuilder, StringRecord, Trim};
-use hertzchain_chain::{Material, Pair};
+use hertzchain_chain::{BeadPair, Material};
 
 /// The table that comes with the program: the paper's three.
 const KNOWN: &str = include_str!("../../data/oils.csv");
@@ -71,7 +71,7 @@ impl Oil {
                     shear_viscosity_pa_s: viscosity,
                     bulk_viscosity_pa_s: viscosity,
                 };
-                let pair = Pair {
+                let pair = BeadPair {
                     left: material,
                     right: material,
                     radius_m: reduced_radius_m,

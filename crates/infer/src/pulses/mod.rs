@@ -9,5 +9,7 @@ mod align;
 mod problem;
 mod record;
 
-pub use problem::{PulseProblem, Respond};
-pub use record::Pulses;
+pub use self::{
+    problem::{PulseProblem, Respond},
+    record::Pulses,
+};

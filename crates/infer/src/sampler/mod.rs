@@ -3,8 +3,10 @@
 mod chain;
 mod diagnosis;
 
-pub use chain::{Chain, Sampling};
-pub use diagnosis::{
-    Autocorrelation, Diagnosis, Posterior, Requirements, Shortfall, Unconverged,
-    autocorrelation_time, split_r_hat,
+pub use self::{
+    chain::{Chain, Sampling},
+    diagnosis::{
+        Autocorrelation, Diagnosis, Posterior, Requirements, Shortfall, Unconverged,
+        autocorrelation_time, split_r_hat,
+    },
 };

@@ -21,14 +21,16 @@ mod tdms;
 mod text;
 mod wav;
 
+#[cfg(feature = "hdf5")]
+pub use self::{
+    hdf5::ColumnFile,
+    options::{Parts, ReadOptions, Rows},
+    read::{Records, is_recording, read},
+};
 pub use files::{
     Files, no_formula, peek, remove_copies, remove_left_behind, seekable, text, without_controls,
     write_whole,
 };
-#[cfg(feature = "hdf5")]
-pub use hdf5::ColumnFile;
-pub use options::{Parts, ReadOptions, Rows};
-pub use read::{Records, is_recording, read};
 pub(crate) use record::extremes;
 pub use record::{Channel, Record};
 #[cfg(feature = "hdf5")]

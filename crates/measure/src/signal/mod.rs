@@ -36,21 +36,19 @@ mod power_law;
 mod spikes;
 mod statistics;
 
-pub use baseline::{Baseline, baseline};
-pub use filters::{Bandwidth, LowPass, invert_high_pass};
-pub use find::{
-    Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Normalisation, Polarity, Pulse,
-    PulseKind, PulseLimits, QualityFlag, normalisation, pulses,
-};
-pub use flight::{Flight, Measured, SignalOptions, mean_systematic, measure, without_systematic};
-pub use pick::{
-    CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation,
-};
-pub use power_law::{
-    FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty,
-};
-pub use spikes::without_spikes;
-pub use statistics::{
-    ChiSquare, Coverage, Estimate, Point, Ratio, Summary, chi_square, coverage, groups, median,
-    ratios_at_common, summary,
+pub use self::{
+    baseline::{Baseline, baseline},
+    filters::{Bandwidth, LowPass, invert_high_pass},
+    find::{
+        Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Normalisation, Polarity,
+        Pulse, PulseKind, PulseLimits, QualityFlag, normalisation, pulses,
+    },
+    flight::{Flight, Measured, SignalOptions, mean_systematic, measure, without_systematic},
+    pick::{CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation},
+    power_law::{FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty},
+    spikes::without_spikes,
+    statistics::{
+        ChiSquare, Coverage, Estimate, Point, Ratio, Summary, chi_square, coverage, groups, median,
+        ratios_at_common, summary,
+    },
 };

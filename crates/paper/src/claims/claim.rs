@@ -2,7 +2,7 @@
 //! printed constants.
 
 use super::predicates;
-use super::{ClaimFinding, Evidence, Verdict};
+use super::{ClaimFinding, ClaimVerdict, Evidence};
 use serde::{Deserialize, Serialize};
 
 /// On which side of the threshold the deciding number must lie.
@@ -171,7 +171,7 @@ pub fn read<E>(
 pub struct Rounded {
     /// Number of draws.
     pub draws: usize,
-    /// Draws with each verdict, in the order of [`Verdict::ALL`], by the side on
+    /// Draws with each verdict, in the order of [`ClaimVerdict::ALL`], by the side on
     /// which their numbers lie: how accurately a draw was computed decides nothing.
     pub verdicts: [usize; 4],
     /// Draws whose numbers lie on their side by less than their accuracy.
@@ -193,7 +193,7 @@ impl Rounded {
         });
         Self {
             draws: findings.len(),
-            verdicts: Verdict::ALL.map(count),
+            verdicts: ClaimVerdict::ALL.map(count),
             open: findings.iter().filter(|f| f.is_open()).count(),
             with_value: values.count(),
             range,
@@ -201,8 +201,8 @@ impl Rounded {
     }
 
     /// Whether some draw lies on another side than a verdict.
-    pub(crate) fn flips(&self, verdict: Verdict) -> bool {
-        let same = Verdict::ALL.iter().position(|v| *v == verdict);
+    pub(crate) fn flips(&self, verdict: ClaimVerdict) -> bool {
+        let same = ClaimVerdict::ALL.iter().position(|v| *v == verdict);
         same.is_some_and(|i| self.verdicts.get(i) != Some(&self.draws))
     }
 }
@@ -213,7 +213,7 @@ pub struct EvaluatedClaim {
     /// The claim.
     pub claim: Claim,
     /// The verdict, rounding considered.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
     /// What the constants as printed give.
     pub finding: ClaimFinding,
     /// What rounding does, if it was looked at.
@@ -257,7 +257,7 @@ fn decide<E>(evaluator: &Evaluator<E>, printed: &E, draws: &[E]) -> EvaluatedCla
         rounded,
     };
     if evaluated.flips_by_rounding() {
-        evaluated.verdict = Verdict::NotDecidable;
+        evaluated.verdict = ClaimVerdict::NotDecidable;
     }
     evaluated
 }

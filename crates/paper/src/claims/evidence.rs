@@ -11,14 +11,14 @@ pub(crate) const SHOTS_PER_POINT: f64 = 20.0;
 
 /// Which passage a time of flight belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Branch {
+pub enum TofBranch {
     /// From the sensor bead to the wall.
     Incident,
     /// From the wall back to the sensor bead.
     Reflected,
 }
 
-impl Branch {
+impl TofBranch {
     /// Both, the incident first.
     pub const BOTH: [Self; 2] = [Self::Incident, Self::Reflected];
 
@@ -80,15 +80,15 @@ pub struct ShotPoint {
 
 impl ShotPoint {
     /// The ToF of a branch in s.
-    pub fn tof_s(&self, branch: Branch) -> f64 {
+    pub fn tof_s(&self, branch: TofBranch) -> f64 {
         match branch {
-            Branch::Incident => self.tof_incident_s,
-            Branch::Reflected => self.tof_reflected_s,
+            TofBranch::Incident => self.tof_incident_s,
+            TofBranch::Reflected => self.tof_reflected_s,
         }
     }
 
     /// Absolute accuracy of a ToF in s.
-    pub(crate) fn tof_accuracy_s(&self, branch: Branch) -> f64 {
+    pub(crate) fn tof_accuracy_s(&self, branch: TofBranch) -> f64 {
         self.accuracy_reached * self.tof_s(branch)
     }
 }
@@ -109,7 +109,7 @@ impl Curve {
     }
 
     /// All ToFs of a branch in s.
-    pub fn tofs_s(&self, branch: Branch) -> Vec<f64> {
+    pub fn tofs_s(&self, branch: TofBranch) -> Vec<f64> {
         self.points.iter().map(|p| p.tof_s(branch)).collect()
     }
 
@@ -122,7 +122,7 @@ impl Curve {
     /// d ln T/d ln v of a branch at every speed, from its neighbours in log–log,
     /// where the curve is nearly straight; and its absolute accuracy: that of
     /// the two ToFs over the distance of their speeds in ln v.
-    fn exponents(&self, branch: Branch) -> Vec<(f64, f64)> {
+    fn exponents(&self, branch: TofBranch) -> Vec<(f64, f64)> {
         let exponent = |a: &ShotPoint, b: &ShotPoint| {
             let span = (b.speed_m_s / a.speed_m_s).ln();
             let rise = (b.tof_s(branch) / a.tof_s(branch)).ln();
@@ -142,21 +142,21 @@ impl Curve {
     }
 
     /// dT/dv of a branch in s²/m at every speed.
-    pub(crate) fn slopes_s2_m(&self, branch: Branch) -> Vec<f64> {
+    pub(crate) fn slopes_s2_m(&self, branch: TofBranch) -> Vec<f64> {
         let slopes = self.exponents(branch).into_iter().zip(&self.points);
         slopes.map(|((exponent, _), p)| exponent * p.tof_s(branch) / p.speed_m_s).collect()
     }
 
     /// Relative accuracy of dT/dv at every speed: that of the local exponent
     /// and of the ToF.
-    pub(crate) fn slope_accuracies(&self, branch: Branch) -> Vec<f64> {
+    pub(crate) fn slope_accuracies(&self, branch: TofBranch) -> Vec<f64> {
         let exponents = self.exponents(branch).into_iter().zip(&self.points);
         exponents.map(|((exponent, off), p)| (off / exponent).abs() + p.accuracy_reached).collect()
     }
 
     /// Standard error in s that the paper's points have: the scatter of the
     /// speed over 20 shots, carried through dT/dv, over √20.
-    pub(crate) fn standard_errors_s(&self, branch: Branch) -> Vec<f64> {
+    pub(crate) fn standard_errors_s(&self, branch: TofBranch) -> Vec<f64> {
         let scatter = SPEED_SCATTER_M_S / SHOTS_PER_POINT.sqrt();
         let slopes = self.slopes_s2_m(branch);
         slopes.iter().map(|slope| slope.abs() * scatter).collect()
@@ -166,7 +166,7 @@ impl Curve {
     ///
     /// # Errors
     /// Fewer than two speeds, or a ToF that is not a positive number.
-    pub fn power_law(&self, branch: Branch) -> Result<PowerLaw, FitError> {
+    pub fn power_law(&self, branch: TofBranch) -> Result<PowerLaw, FitError> {
         power_law(&self.speeds_m_s(), &self.tofs_s(branch), None)
     }
 
@@ -174,7 +174,7 @@ impl Curve {
     ///
     /// # Errors
     /// As [`Curve::power_law`].
-    pub(crate) fn weighted_power_law(&self, branch: Branch) -> Result<PowerLaw, FitError> {
+    pub(crate) fn weighted_power_law(&self, branch: TofBranch) -> Result<PowerLaw, FitError> {
         let sigmas = self.standard_errors_s(branch);
         power_law(&self.speeds_m_s(), &self.tofs_s(branch), Some(&sigmas))
     }
@@ -224,7 +224,7 @@ pub enum MeasuredKind {
     /// Peak force at the sensor bead over that at the wall.
     SensorOverWall,
     /// A time of flight in s.
-    Tof(Branch),
+    Tof(TofBranch),
     /// Wet over dry incident ToF.
     Ratio,
 }

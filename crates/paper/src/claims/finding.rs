@@ -1,6 +1,6 @@
 //! The answer to a claim: a verdict and the number behind it.
 
-pub use hertzchain_figures::Verdict;
+pub use hertzchain_figures::ClaimVerdict;
 
 /// Share of its comparisons that a claim must meet to hold in part: what more
 /// often fails than holds is not partly true.
@@ -10,10 +10,10 @@ pub(crate) const IN_PART: f64 = 0.5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimFinding {
     /// What follows.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
     /// What would follow if the numbers were exact: on which side they lie, be it
     /// by less than their accuracy.
-    pub leaning: Verdict,
+    pub leaning: ClaimVerdict,
     /// The number that decides; not a number when there is none.
     pub value: f64,
     /// Absolute accuracy of the number.
@@ -45,8 +45,8 @@ impl ClaimFinding {
     /// Of a claim for which numbers are missing.
     pub(crate) fn without_numbers(why: &str) -> Self {
         Self {
-            verdict: Verdict::NotDecidable,
-            leaning: Verdict::NotDecidable,
+            verdict: ClaimVerdict::NotDecidable,
+            leaning: ClaimVerdict::NotDecidable,
             value: f64::NAN,
             accuracy: f64::NAN,
             expected: None,
@@ -64,9 +64,9 @@ impl ClaimFinding {
 
     /// The finding at the threshold, or in part where only the weaker one is met.
     pub(crate) fn or_in_part(self, weaker: Option<&Self>) -> Self {
-        let or_in_part = |verdict, weaker: Option<Verdict>| match (verdict, weaker) {
-            (Verdict::Fails, Some(Verdict::Holds)) => Verdict::InPart,
-            (Verdict::Fails, Some(Verdict::NotDecidable)) => Verdict::NotDecidable,
+        let or_in_part = |verdict, weaker: Option<ClaimVerdict>| match (verdict, weaker) {
+            (ClaimVerdict::Fails, Some(ClaimVerdict::Holds)) => ClaimVerdict::InPart,
+            (ClaimVerdict::Fails, Some(ClaimVerdict::NotDecidable)) => ClaimVerdict::NotDecidable,
             (verdict, _) => verdict,
         };
         Self {
@@ -109,17 +109,17 @@ impl Counts {
 
     /// The verdict that stands whichever way the open comparisons go: holds when all are met, in
     /// part when at least [`IN_PART`] of them are, else fails.
-    fn verdict(self) -> Verdict {
+    fn verdict(self) -> ClaimVerdict {
         let all = self.all();
         let when_met = |met: usize| match met {
-            _ if all == 0 => Verdict::NotDecidable,
-            met if met == all => Verdict::Holds,
-            met if met as f64 >= IN_PART * all as f64 => Verdict::InPart,
-            _ => Verdict::Fails,
+            _ if all == 0 => ClaimVerdict::NotDecidable,
+            met if met == all => ClaimVerdict::Holds,
+            met if met as f64 >= IN_PART * all as f64 => ClaimVerdict::InPart,
+            _ => ClaimVerdict::Fails,
         };
         // More comparisons met never make a verdict worse: the extremes decide.
         let (least, most) = (when_met(self.yes), when_met(self.yes + self.open));
-        if least == most { least } else { Verdict::NotDecidable }
+        if least == most { least } else { ClaimVerdict::NotDecidable }
     }
 }
 

@@ -10,15 +10,19 @@ mod finding;
 mod predicates;
 mod report;
 
-pub(crate) use claim::Predicate;
-pub use claim::{
-    Claim, ClaimError, EvaluatedClaim, Evaluator, Needs, Rounded, claims, evaluate_all,
-    evaluate_all_rounded, read,
+pub use self::{
+    claim::{
+        Claim, ClaimError, EvaluatedClaim, Evaluator, Needs, Rounded, claims, evaluate_all,
+        evaluate_all_rounded, read,
+    },
+    evidence::{Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint, TofBranch},
 };
-pub use evidence::{Branch, Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint};
+pub use self::{
+    predicates::find as predicate,
+    report::{MEANING, claims_markdown, computed_text},
+};
+pub(crate) use claim::Predicate;
 pub(crate) use evidence::{SHOTS_PER_POINT, SPEED_SCATTER_M_S};
-pub use finding::{ClaimFinding, Distance, Verdict};
+pub use finding::{ClaimFinding, ClaimVerdict, Distance};
 pub(crate) use finding::{Comparisons, IN_PART};
-pub use predicates::find as predicate;
-pub use report::{MEANING, claims_markdown, computed_text};
 pub(crate) use report::{claims_json, rounded_text, verdicts_text, with_unit};

@@ -1,6 +1,6 @@
 //! Claims with their verdicts, as JSON and Markdown.
 
-use super::{Claim, ClaimFinding, EvaluatedClaim, IN_PART, Needs, Rounded, Verdict};
+use super::{Claim, ClaimFinding, ClaimVerdict, EvaluatedClaim, IN_PART, Needs, Rounded};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -34,7 +34,7 @@ fn row(evaluated: &EvaluatedClaim) -> Value {
     let both = [claim, found].into_iter().filter_map(|part| part.as_object().cloned());
     let mut row: Map<String, Value> = both.flatten().collect();
     if let Some(rounded) = &evaluated.rounded {
-        let counts = Verdict::ALL.iter().zip(rounded.verdicts);
+        let counts = ClaimVerdict::ALL.iter().zip(rounded.verdicts);
         let counts: Map<String, Value> =
             counts.map(|(verdict, count)| (verdict.name().to_owned(), json!(count))).collect();
         let rounding = json!({
@@ -104,7 +104,7 @@ const ROUNDING: &str = "Rounding: every printed constant is drawn within half a 
 /// How many claims have which verdict, in a sentence.
 fn totals(evaluated: &[EvaluatedClaim]) -> String {
     let count = |verdict| evaluated.iter().filter(|j| j.verdict == verdict).count();
-    let parts = Verdict::ALL.map(|verdict| format!("{} {}", count(verdict), verdict.name()));
+    let parts = ClaimVerdict::ALL.map(|verdict| format!("{} {}", count(verdict), verdict.name()));
     format!("Of {} claims: {}.", evaluated.len(), parts.join(", "))
 }
 
@@ -132,7 +132,7 @@ fn section(page: &mut String, evaluated: &EvaluatedClaim) {
 
 /// What rounding of the printed constants does to a claim.
 fn rounding(page: &mut String, evaluated: &EvaluatedClaim, rounded: &Rounded) {
-    let counts = Verdict::ALL.iter().zip(rounded.verdicts);
+    let counts = ClaimVerdict::ALL.iter().zip(rounded.verdicts);
     let counts = counts.filter(|(_, count)| *count > 0);
     let counts: Vec<String> =
         counts.map(|(verdict, count)| format!("{verdict} in {count}")).collect();

@@ -3,10 +3,9 @@
 mod rig;
 mod verdicts;
 
-pub use rig::rig;
-pub use verdicts::rig_figures;
+pub use self::{rig::rig, verdicts::rig_figures};
 
-use crate::claims::{Branch, Curve, Evidence, SHOTS_PER_POINT, SPEED_SCATTER_M_S};
+use crate::claims::{Curve, Evidence, SHOTS_PER_POINT, SPEED_SCATTER_M_S, TofBranch};
 use crate::reproduce::{Film, OILS, ReproduceError, Reproduction, SignalShot};
 use hertzchain_chain::wave::Budget;
 use hertzchain_figures::{
@@ -139,8 +138,8 @@ const DASHED: &str = "Hertz + viscoelastic";
 
 fn curves(evidence: &Evidence, chart: Chart) -> Chart {
     let looks = [
-        (Branch::Reflected, Marker::OpenSquare, Colour::VERMILION),
-        (Branch::Incident, Marker::Circle, Colour::BLUE),
+        (TofBranch::Reflected, Marker::OpenSquare, Colour::VERMILION),
+        (TofBranch::Incident, Marker::Circle, Colour::BLUE),
     ];
     let mut chart = chart;
     for (branch, marker, colour) in looks {
@@ -154,7 +153,7 @@ fn curves(evidence: &Evidence, chart: Chart) -> Chart {
 }
 
 /// Without a name: a sample in black stands for both colours in the legend.
-fn viscoelastic(curve: &Curve, branch: Branch, colour: Colour) -> Series {
+fn viscoelastic(curve: &Curve, branch: TofBranch, colour: Colour) -> Series {
     let times = scaled(&curve.tofs_s(branch), US);
     line("", &curve.speeds_m_s(), &times, colour)
 }
@@ -164,7 +163,7 @@ fn line(name: &str, speeds_m_s: &[f64], times_us: &[f64], colour: Colour) -> Ser
 }
 
 /// Error bars: the scatter of the speed from shot to shot, carried through dT/dv.
-fn dry(curve: &Curve, branch: Branch, marker: Marker, colour: Colour) -> Series {
+fn dry(curve: &Curve, branch: TofBranch, marker: Marker, colour: Colour) -> Series {
     let errors: Vec<f64> = curve
         .slopes_s2_m(branch)
         .iter()

@@ -1,6 +1,6 @@
 //! Figures of verdicts: which claims hold in which reading and on which rig, and what the rigs show.
 
-use crate::claims::{Branch, EvaluatedClaim, Verdict};
+use crate::claims::{ClaimVerdict, EvaluatedClaim, TofBranch};
 use crate::readings::{FLIPPED, ReadingRow, ReadingScan};
 use crate::rig_claims::{
     FACTORS, Observed, RigClaims, RigEvidence, SpeedSeries, TriedRig, mean, rebound_m_s, spread_s,
@@ -21,7 +21,7 @@ pub(super) fn readings(scan: &ReadingScan) -> Figure {
     let mut fixed: [Vec<String>; 4] = Default::default();
     for (i, claim) in scan.claims.iter().enumerate() {
         let name = name(scan, i, &claim.id);
-        let verdicts: Vec<Verdict> = moved.iter().filter_map(|c| c.verdict(i)).collect();
+        let verdicts: Vec<ClaimVerdict> = moved.iter().filter_map(|c| c.verdict(i)).collect();
         match verdicts.split_first() {
             Some((first, others)) if others.iter().all(|other| other == first) => {
                 if let Some(list) = fixed.get_mut(place(*first)) {
@@ -31,7 +31,7 @@ pub(super) fn readings(scan: &ReadingScan) -> Figure {
             _ => matrix = matrix.row(&name, &verdicts),
         }
     }
-    for (verdict, claims) in Verdict::ALL.into_iter().zip(&fixed) {
+    for (verdict, claims) in ClaimVerdict::ALL.into_iter().zip(&fixed) {
         if !claims.is_empty() {
             matrix = matrix.throughout(verdict, &format!("in all: {}", claims.join(", ")));
         }
@@ -75,8 +75,8 @@ fn name(scan: &ReadingScan, claim: usize, id: &str) -> String {
 }
 
 /// Place of a verdict in the lists below the table.
-fn place(verdict: Verdict) -> usize {
-    Verdict::ALL.iter().take_while(|listed| **listed != verdict).count()
+fn place(verdict: ClaimVerdict) -> usize {
+    ClaimVerdict::ALL.iter().take_while(|listed| **listed != verdict).count()
 }
 
 /// One reading, or options of one switch with the same verdicts.
@@ -93,7 +93,7 @@ impl ReadingColumn<'_> {
         self.switch.is_empty() || self.row.verdicts != scan.default.verdicts
     }
 
-    fn verdict(&self, claim: usize) -> Option<Verdict> {
+    fn verdict(&self, claim: usize) -> Option<ClaimVerdict> {
         self.row.verdicts.get(claim).copied()
     }
 }
@@ -142,12 +142,12 @@ fn verdicts(claims: &RigClaims) -> Figure {
     let cell = |claim: usize| {
         let verdict = move |all: &[EvaluatedClaim]| all.get(claim).map(|own| own.verdict);
         move |(_, all): &(TriedRig, Vec<EvaluatedClaim>)| {
-            verdict(all).unwrap_or(Verdict::NotDecidable)
+            verdict(all).unwrap_or(ClaimVerdict::NotDecidable)
         }
     };
     let rows = claims.evaluated.iter().enumerate();
     let matrix = rows.fold(VerdictMatrix::new(&names), |matrix, (at, evaluated)| {
-        let cells: Vec<Verdict> = claims.rigs.iter().map(cell(at)).collect();
+        let cells: Vec<ClaimVerdict> = claims.rigs.iter().map(cell(at)).collect();
         matrix.row(&evaluated.claim.id.replace('-', " "), &cells)
     });
     matrix.figure().title("What the paper says of its rig, on virtual ones")
@@ -158,17 +158,17 @@ fn verdicts(claims: &RigClaims) -> Figure {
 fn spreads(evidence: &RigEvidence) -> Figure {
     let kinds: [(&str, Colour, Marker, Of); 3] = [
         ("reflected, with taps", Colour::GREEN, Marker::OpenSquare, |at| {
-            spread_s(&at.tapped, Branch::Reflected)
+            spread_s(&at.tapped, TofBranch::Reflected)
         }),
         ("incident, with taps", Colour::BLUE, Marker::Circle, |at| {
-            spread_s(&at.tapped, Branch::Incident)
+            spread_s(&at.tapped, TofBranch::Incident)
         }),
         ("incident, without taps", Colour::VERMILION, Marker::Triangle, |at| {
-            spread_s(&at.loose, Branch::Incident)
+            spread_s(&at.loose, TofBranch::Incident)
         }),
     ];
     let added_ns = evidence.rigs.first().map_or(f64::NAN, |usual| {
-        let scatter = usual.with_scatter_s(Branch::Incident);
+        let scatter = usual.with_scatter_s(TofBranch::Incident);
         let added_s: Vec<f64> = scatter.map(|(_, scatter_s)| scatter_s).collect();
         1e9 * typical(&added_s).value.exp()
     });

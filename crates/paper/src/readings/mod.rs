@@ -4,7 +4,9 @@ mod report;
 mod rounding;
 mod scan;
 
+pub use self::{
+    rounding::{Draw, DryPoisson},
+    scan::{ReadingRow, ReadingScan, scan},
+};
 pub(crate) use report::{FLIPPED, scan_csv, scan_markdown, two_digits_markdown};
 pub(crate) use rounding::rounded_evidence;
-pub use rounding::{Draw, DryPoisson};
-pub use scan::{ReadingRow, ReadingScan, scan};

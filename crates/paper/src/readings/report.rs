@@ -1,7 +1,7 @@
 //! A scan over readings as a table and a page.
 
 use super::scan::{ReadingRow, ReadingScan, SwitchOptions};
-use crate::claims::{Claim, EvaluatedClaim, Verdict, rounded_text, verdicts_text, with_unit};
+use crate::claims::{Claim, ClaimVerdict, EvaluatedClaim, rounded_text, verdicts_text, with_unit};
 use hertzchain_experiment::Reading;
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -159,11 +159,12 @@ fn closest(page: &mut String, scan: &ReadingScan) {
     let _ = writeln!(page, "- Gained: {}.", or_none(names(scan, &gained)));
     let _ = writeln!(page, "- Missing: {}.", or_none(names(scan, &lost)));
     let unmet = row.verdicts.iter().enumerate();
-    let unmet: Vec<usize> = unmet.filter(|(_, v)| **v == Verdict::Fails).map(|(i, _)| i).collect();
+    let unmet: Vec<usize> =
+        unmet.filter(|(_, v)| **v == ClaimVerdict::Fails).map(|(i, _)| i).collect();
     let _ = writeln!(page, "- Still failing: {}.", or_none(names(scan, &unmet)));
 }
 
-/// Verdict and value of every claim in the default and the closest reading:
+/// ClaimVerdict and value of every claim in the default and the closest reading:
 /// what changes within a verdict shows too.
 fn side_by_side(page: &mut String, scan: &ReadingScan) {
     page.push_str("\n| claim | default | value | closest | value |\n|---|---|---|---|---|\n");

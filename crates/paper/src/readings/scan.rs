@@ -1,9 +1,9 @@
 //! Which claims hold in which reading.
 
 use super::rounding::sharpened;
-use crate::claims::{Claim, Evaluator, Verdict, claims};
+use crate::claims::{Claim, ClaimVerdict, Evaluator, claims};
 use crate::reproduce::{
-    Cases, Effort, Gathering, Progress, ReproduceError, ShotCache, gather_cached,
+    Cases, Effort, Gathering, ReproduceError, ReproduceProgress, ShotCache, gather_cached,
 };
 use hertzchain_experiment::Reading;
 use std::time::Instant;
@@ -14,7 +14,7 @@ pub struct ReadingRow {
     /// The reading.
     pub reading: Reading,
     /// One verdict a claim.
-    pub verdicts: Vec<Verdict>,
+    pub verdicts: Vec<ClaimVerdict>,
     /// The deciding numbers, not a number where there is none.
     pub values: Vec<f64>,
 }
@@ -93,7 +93,7 @@ pub fn scan(
     most: usize,
     speeds_m_s: &[f64],
     accuracy: f64,
-    progress: &dyn Progress,
+    progress: &dyn ReproduceProgress,
 ) -> Result<ReadingScan, ReproduceError> {
     let start = Instant::now();
     let scanner = Scanner {
@@ -172,11 +172,11 @@ impl ReadingScan {
     /// reading that meets it better.
     pub(crate) fn prices(&self) -> Vec<Price> {
         let open = self.default.verdicts.iter().enumerate();
-        let open = open.filter(|(_, verdict)| **verdict != Verdict::Holds);
+        let open = open.filter(|(_, verdict)| **verdict != ClaimVerdict::Holds);
         open.map(|(claim, verdict)| self.price(claim, *verdict)).collect()
     }
 
-    fn price(&self, claim: usize, verdict: Verdict) -> Price {
+    fn price(&self, claim: usize, verdict: ClaimVerdict) -> Price {
         let score = |row: &&ReadingRow| row.verdicts.get(claim).map_or(0.0, |v| v.score());
         let most = self.rows().map(|row| score(&row)).fold(0.0, f64::max);
         let better = self.rows().filter(|row| score(row) == most && most > verdict.score());
@@ -262,7 +262,7 @@ struct Scanner<'a> {
     cache: ShotCache,
     speeds_m_s: &'a [f64],
     accuracy: f64,
-    progress: &'a dyn Progress,
+    progress: &'a dyn ReproduceProgress,
 }
 
 impl Scanner<'_> {

@@ -101,7 +101,7 @@ fn is_plain(name: &str) -> bool {
 }
 
 /// Receives the progress of a long computation; may be called from any thread.
-pub trait Progress: Sync {
+pub trait ReproduceProgress: Sync {
     /// A stage of so many steps begins.
     fn begin(&self, stage: &str, steps: u64);
     /// One step of the stage is done.
@@ -114,7 +114,7 @@ pub trait Progress: Sync {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
-impl Progress for Silent {
+impl ReproduceProgress for Silent {
     fn begin(&self, _stage: &str, _steps: u64) {}
     fn advance(&self) {}
 }

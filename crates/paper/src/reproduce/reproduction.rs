@@ -5,7 +5,7 @@ use super::films::{Film, SignalShot, films, signals};
 use super::gather::{Effort, Gathering, gather};
 use super::provenance::machine;
 use super::tables::{oils_csv, power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv};
-use super::{Progress, Provenance, ReproduceError};
+use super::{Provenance, ReproduceError, ReproduceProgress};
 use crate::claims::{
     EvaluatedClaim, Evidence, MEANING, claims, claims_json, claims_markdown, evaluate_all_rounded,
 };
@@ -78,7 +78,7 @@ pub struct Reproduction {
 /// The first shot that can't be computed.
 pub fn reproduce(
     options: &ReproduceOptions,
-    progress: &dyn Progress,
+    progress: &dyn ReproduceProgress,
 ) -> Result<Reproduction, ReproduceError> {
     let start = Instant::now();
     let reading = Reading::default();
@@ -132,7 +132,7 @@ fn evaluated(
     options: &ReproduceOptions,
     (reading, dry_poisson): (&Reading, DryPoisson),
     evidence: &Evidence,
-    progress: &dyn Progress,
+    progress: &dyn ReproduceProgress,
 ) -> Result<Vec<EvaluatedClaim>, ReproduceError> {
     let evaluators = claims()?;
     progress.begin("rounding of the printed constants", options.draws as u64);

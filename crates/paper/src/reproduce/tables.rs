@@ -2,8 +2,8 @@
 
 use super::ReproduceError;
 use super::cases::{CASES, Cases, OILS, SPEEDS_M_S};
-use crate::claims::{Branch, Curve, Evidence, ShotPoint};
-use hertzchain_chain::{Chain, Pair};
+use crate::claims::{Curve, Evidence, ShotPoint, TofBranch};
+use hertzchain_chain::{BeadPair, Chain};
 use std::fmt::Write as _;
 
 /// A table as CSV.
@@ -79,7 +79,7 @@ pub(super) fn power_laws_csv(evidence: &Evidence) -> String {
          residual_rms,residual_largest,weighted_residual_largest_in_standard_errors",
     );
     for curve in curves(evidence) {
-        for branch in Branch::BOTH {
+        for branch in TofBranch::BOTH {
             if let Some(row) = power_law_row(curve, branch) {
                 csv.row(&[&curve.case, branch.name()], None, &row);
             }
@@ -88,7 +88,7 @@ pub(super) fn power_laws_csv(evidence: &Evidence) -> String {
     csv.0
 }
 
-fn power_law_row(curve: &Curve, branch: Branch) -> Option<[f64; 8]> {
+fn power_law_row(curve: &Curve, branch: TofBranch) -> Option<[f64; 8]> {
     let fit = curve.power_law(branch).ok()?;
     let weighted = curve.weighted_power_law(branch).ok()?;
     let squares: f64 = fit.residuals.iter().map(|r| r * r).sum();
@@ -113,7 +113,7 @@ fn power_law_row(curve: &Curve, branch: Branch) -> Option<[f64; 8]> {
 pub(super) fn power_law_residuals_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new("case,branch,speed_m_s,tof_s,residual,standard_error");
     for curve in curves(evidence) {
-        for branch in Branch::BOTH {
+        for branch in TofBranch::BOTH {
             let Ok(fit) = curve.power_law(branch) else {
                 continue;
             };
@@ -159,7 +159,7 @@ fn effective(chain: &Chain) -> [f64; 5] {
     let (Some(material), Some(bead)) = (wet, chain.beads.first()) else {
         return [f64::NAN; 5];
     };
-    let pair = Pair {
+    let pair = BeadPair {
         left: material,
         right: material,
         radius_m: 0.5 * bead.radius_m,

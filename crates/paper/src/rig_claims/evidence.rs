@@ -6,8 +6,8 @@
 //! is the standard error.
 
 use super::design::{RigDesign, TriedRig};
-use crate::claims::{Branch, SPEED_SCATTER_M_S};
-use crate::reproduce::Progress;
+use crate::claims::{SPEED_SCATTER_M_S, TofBranch};
+use crate::reproduce::ReproduceProgress;
 use hertzchain_measure::signal::power_law;
 use hertzchain_sim::rig::{Plan, Purpose, RandomStream, RigError, Shot, run_series};
 use rayon::prelude::*;
@@ -50,10 +50,10 @@ impl RigEvidence {
 }
 
 /// A time of flight of a shot in s; not a number if it has none.
-pub(super) fn tof_s(shot: &Shot, branch: Branch) -> f64 {
+pub(super) fn tof_s(shot: &Shot, branch: TofBranch) -> f64 {
     match branch {
-        Branch::Incident => shot.incident_s,
-        Branch::Reflected => shot.reflected_s,
+        TofBranch::Incident => shot.incident_s,
+        TofBranch::Reflected => shot.reflected_s,
     }
 }
 
@@ -81,7 +81,7 @@ const SURE_S: f64 = 0.2e-9;
 
 /// Standard deviation in s of a time of flight of shots of equal speed; not a
 /// number where fewer than two shots have one.
-pub(crate) fn spread_s(shots: &[Shot], branch: Branch) -> f64 {
+pub(crate) fn spread_s(shots: &[Shot], branch: TofBranch) -> f64 {
     let spread_s = deviation(&each(shots, |shot| tof_s(shot, branch)));
     // Not `max`, which prefers any number to none.
     if spread_s < SURE_S { SURE_S } else { spread_s }
@@ -92,7 +92,7 @@ impl Observed {
     /// s: |dT/dv| of a power law through the means of tapped shots.
     pub(crate) fn with_scatter_s(
         &self,
-        branch: Branch,
+        branch: TofBranch,
     ) -> impl Iterator<Item = (&SpeedSeries, f64)> {
         let mean_s = |at: &SpeedSeries| mean(&each(&at.tapped, |shot| tof_s(shot, branch)));
         let means_s: Vec<f64> = self.speeds.iter().map(mean_s).collect();
@@ -187,7 +187,10 @@ type Plans = [Plan; 2];
 ///
 /// # Errors
 /// An experiment that is not a rig's, a shot that can't be computed.
-pub fn observe(design: &RigDesign, progress: &dyn Progress) -> Result<RigEvidence, RigError> {
+pub fn observe(
+    design: &RigDesign,
+    progress: &dyn ReproduceProgress,
+) -> Result<RigEvidence, RigError> {
     let plans: Result<Vec<Plans>, RigError> = design
         .rigs
         .iter()

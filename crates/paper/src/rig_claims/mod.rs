@@ -10,8 +10,10 @@ mod evidence;
 mod predicates;
 mod report;
 
-pub use design::{FACTORS, Factor, RigDesign, TriedRig};
-pub use evidence::{Observed, RigEvidence, SpeedSeries, WithError, observe, typical};
+pub use self::{
+    design::{FACTORS, Factor, RigDesign, TriedRig},
+    evidence::{Observed, RigEvidence, SpeedSeries, WithError, observe, typical},
+};
 pub(crate) use evidence::{mean, rebound_m_s, spread_s};
 pub use report::{MEANING, RigClaims, series_csv};
 

@@ -4,7 +4,7 @@ use super::evidence::{
     Observed, RigEvidence, SpeedSeries, WithError, deviation, each, largest_m, mean_of,
     rebound_m_s, root_mean_square, spread_s, tof_s, typical,
 };
-use crate::claims::{Branch, Claim, ClaimFinding, Comparisons, Needs, Predicate};
+use crate::claims::{Claim, ClaimFinding, Comparisons, Needs, Predicate, TofBranch};
 use hertzchain_sim::rig::Shot;
 
 static PREDICATES: &[(&str, Predicate<RigEvidence>)] = &[
@@ -41,7 +41,7 @@ fn rebounds_differ(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
 
 fn spread_and_scatter(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
-        let series = observed.with_scatter_s(Branch::Incident);
+        let series = observed.with_scatter_s(TofBranch::Incident);
         let ratio = |(at, scatter_s): (&SpeedSeries, f64)| incident_s(&at.loose) / scatter_s;
         typical(&series.map(ratio).collect::<Vec<f64>>())
     })
@@ -56,7 +56,7 @@ fn taps_shrink_own(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
 
 fn taps_shrink_seen(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
-        let series = observed.with_scatter_s(Branch::Incident);
+        let series = observed.with_scatter_s(TofBranch::Incident);
         let ratio = |(at, scatter_s): (&SpeedSeries, f64)| {
             incident_s(&at.loose).hypot(scatter_s) / incident_s(&at.tapped).hypot(scatter_s)
         };
@@ -67,14 +67,14 @@ fn taps_shrink_seen(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
 fn return_spreads_own(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
         let ratio =
-            |at: &SpeedSeries| spread_s(&at.tapped, Branch::Reflected) / incident_s(&at.tapped);
+            |at: &SpeedSeries| spread_s(&at.tapped, TofBranch::Reflected) / incident_s(&at.tapped);
         typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
     })
 }
 
 fn return_spreads_seen(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
-        let [incident, reflected] = Branch::BOTH.map(|branch| {
+        let [incident, reflected] = TofBranch::BOTH.map(|branch| {
             let series = observed.with_scatter_s(branch);
             series.map(move |(at, scatter_s)| spread_s(&at.tapped, branch).hypot(scatter_s))
         });
@@ -84,13 +84,13 @@ fn return_spreads_seen(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
 }
 
 fn incident_s(shots: &[Shot]) -> f64 {
-    spread_s(shots, Branch::Incident)
+    spread_s(shots, TofBranch::Incident)
 }
 
 fn return_longer(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_series_each(claim, evidence, |at| {
         let [incident, reflected] =
-            Branch::BOTH.map(|branch| mean_of(&each(&at.tapped, |shot| tof_s(shot, branch))));
+            TofBranch::BOTH.map(|branch| mean_of(&each(&at.tapped, |shot| tof_s(shot, branch))));
         let value = reflected.value / incident.value;
         let relative = incident.error / incident.value + reflected.error / reflected.value;
         WithError { value, error: value * relative }

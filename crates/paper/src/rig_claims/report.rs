@@ -6,7 +6,8 @@ use super::evidence::{
     Observed, RigEvidence, SpeedSeries, deviation, each, largest_m, mean, rebound_m_s, tof_s,
 };
 use crate::claims::{
-    Branch, ClaimError, EvaluatedClaim, claims_json, claims_markdown, computed_text, evaluate_all,
+    ClaimError, EvaluatedClaim, TofBranch, claims_json, claims_markdown, computed_text,
+    evaluate_all,
 };
 use hertzchain_sim::rig::Shot;
 use serde_json::{Map, Value, json};
@@ -148,7 +149,7 @@ fn numbers(shots: &[Shot]) -> [f64; 10] {
         let values = each(shots, what);
         (mean(&values), deviation(&values))
     };
-    let [incident, reflected] = Branch::BOTH.map(|branch| of(&|shot| tof_s(shot, branch)));
+    let [incident, reflected] = TofBranch::BOTH.map(|branch| of(&|shot| tof_s(shot, branch)));
     let rebound = of(&rebound_m_s);
     [
         incident.0,

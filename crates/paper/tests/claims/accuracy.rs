@@ -3,7 +3,7 @@
 use crate::agreeing::agreeing;
 use crate::breaks::{BREAKS, each};
 use crate::{decide, dry};
-use hertzchain_paper::claims::{Evidence, ShotPoint, Verdict, claims};
+use hertzchain_paper::claims::{ClaimVerdict, Evidence, ShotPoint, claims};
 
 /// The numbers as made up and after every change that breaks a claim.
 fn all_evidence() -> Vec<Evidence> {
@@ -38,8 +38,8 @@ fn a_count_that_a_reading_could_change_is_as_unsure_as_that() {
         }
     });
     let finding = decide("pump-crosses-once", &evidence);
-    assert_eq!(finding.verdict, Verdict::NotDecidable);
-    assert_eq!(finding.leaning, Verdict::Holds);
+    assert_eq!(finding.verdict, ClaimVerdict::NotDecidable);
+    assert_eq!(finding.leaning, ClaimVerdict::Holds);
     // Above 1 there, the ratio would pass 1 upward twice and downward once.
     assert_eq!((finding.value, finding.accuracy), (1.0, 1.0));
     let nearest = finding.nearest_change.unwrap();
@@ -61,10 +61,10 @@ fn a_ratio_of_1_at_the_only_passage_leaves_the_count_exact() {
     };
     near_1(&mut evidence, 1.0);
     let one = decide("pump-crosses-once", &evidence);
-    assert_eq!((one.verdict, one.accuracy), (Verdict::Holds, 0.0));
+    assert_eq!((one.verdict, one.accuracy), (ClaimVerdict::Holds, 0.0));
     near_1(&mut evidence, 1.152);
     let two = decide("pump-crosses-once", &evidence);
-    assert_eq!((two.verdict, two.accuracy), (Verdict::NotDecidable, 1.0));
+    assert_eq!((two.verdict, two.accuracy), (ClaimVerdict::NotDecidable, 1.0));
 }
 
 /// Signs from a counter, without pattern enough to matter.

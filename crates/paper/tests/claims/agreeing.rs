@@ -1,7 +1,7 @@
 //! Numbers made up so that everything the paper says is true.
 
 use hertzchain_paper::claims::{
-    Branch, Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint,
+    Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint, TofBranch,
 };
 
 /// Speeds in m/s.
@@ -88,8 +88,8 @@ pub fn agreeing() -> Evidence {
         viscosity_over_modulus_s: 1.5e-7,
         digitised: vec![
             measured(MeasuredKind::SensorOverWall, "dry", sensor_over_wall, 0.01),
-            measured(MeasuredKind::Tof(Branch::Incident), "dry", dry(0.1).0, 1e-6),
-            measured(MeasuredKind::Tof(Branch::Reflected), "dry", dry(0.1).1 + 5e-7, 1e-6),
+            measured(MeasuredKind::Tof(TofBranch::Incident), "dry", dry(0.1).0, 1e-6),
+            measured(MeasuredKind::Tof(TofBranch::Reflected), "dry", dry(0.1).1 + 5e-7, 1e-6),
             measured(MeasuredKind::Ratio, "gear", 0.97 * (0.1_f64 / 1.1).powf(0.004), 1e-3),
         ],
     }

@@ -9,7 +9,7 @@ mod breaks;
 use agreeing::{agreeing, dry};
 use breaks::{BREAKS, each};
 use hertzchain_paper::claims::{
-    Claim, ClaimFinding, EvaluatedClaim, Evaluator, Evidence, MEANING, Needs, Verdict, claims,
+    Claim, ClaimFinding, ClaimVerdict, EvaluatedClaim, Evaluator, Evidence, MEANING, Needs, claims,
     claims_markdown, evaluate_all, evaluate_all_rounded, predicate, read,
 };
 
@@ -27,7 +27,7 @@ fn every_claim_holds_on_numbers_that_agree_with_the_paper() {
     let evidence = agreeing();
     for evaluator in claims().unwrap() {
         let finding = evaluator.decide(&evidence);
-        assert_eq!(finding.verdict, Verdict::Holds, "{}: {finding:?}", evaluator.claim.id);
+        assert_eq!(finding.verdict, ClaimVerdict::Holds, "{}: {finding:?}", evaluator.claim.id);
     }
 }
 
@@ -40,7 +40,7 @@ fn every_verdict_flips_when_its_numbers_change() {
         let mut evidence = agreeing();
         change(&mut evidence);
         let verdict = evaluator.decide(&evidence).verdict;
-        assert!(matches!(verdict, Verdict::Fails | Verdict::InPart), "{id}: {verdict}");
+        assert!(matches!(verdict, ClaimVerdict::Fails | ClaimVerdict::InPart), "{id}: {verdict}");
     }
 }
 
@@ -109,7 +109,7 @@ fn the_share_of_rising_speeds_is_as_sure_as_the_turning_points() {
             p.tof_incident_s = dry(p.speed_m_s).0 * ratio;
         });
         let finding = decide(id, &evidence);
-        assert_eq!(finding.verdict, Verdict::NotDecidable, "{id}: {finding:?}");
+        assert_eq!(finding.verdict, ClaimVerdict::NotDecidable, "{id}: {finding:?}");
         // A parabola is found exactly, up to rounding of the ratios.
         assert!((finding.value - 0.5).abs() < 1e-9, "{id}: {finding:?}");
     }
@@ -123,8 +123,8 @@ fn a_rise_over_few_speeds_is_one_over_most_of_the_figures_axis() {
         let ratio = 1.0 + 0.01 * (p.speed_m_s / 0.4).ln().powi(2);
         p.tof_incident_s = dry(p.speed_m_s).0 * ratio;
     });
-    assert_eq!(decide("pump-rises", &evidence).verdict, Verdict::Holds);
-    assert_eq!(decide("pump-rises-log", &evidence).verdict, Verdict::Fails);
+    assert_eq!(decide("pump-rises", &evidence).verdict, ClaimVerdict::Holds);
+    assert_eq!(decide("pump-rises-log", &evidence).verdict, ClaimVerdict::Fails);
 }
 
 #[test]
@@ -133,10 +133,10 @@ fn oils_either_way_at_one_speed_alone_are_half_of_the_main_result() {
     // Every oil on its own side of 1 at all speeds: gear below, pump and motor above.
     each(&mut evidence, "pump", |p| p.tof_incident_s *= 1.2);
     let finding = decide("oil-either-way", &evidence);
-    assert_eq!(finding.verdict, Verdict::InPart, "{finding:?}");
+    assert_eq!(finding.verdict, ClaimVerdict::InPart, "{finding:?}");
     assert!(finding.value < 0.0, "{finding:?}");
     each(&mut evidence, "gear", |p| p.tof_incident_s *= 1.2);
-    assert_eq!(decide("oil-either-way", &evidence).verdict, Verdict::Fails);
+    assert_eq!(decide("oil-either-way", &evidence).verdict, ClaimVerdict::Fails);
 }
 
 #[test]
@@ -151,12 +151,13 @@ fn a_page_of_claims_says_above_its_table_what_a_failure_means() {
 fn gaps_of_more_than_a_millimetre_are_no_small_gaps() {
     let mut evidence = agreeing();
     each(&mut evidence, "dry", |p| p.loosened_m = 2e-3);
-    assert_ne!(decide("gaps", &evidence).verdict, Verdict::Holds);
+    assert_ne!(decide("gaps", &evidence).verdict, ClaimVerdict::Holds);
 }
 
 #[test]
 fn loosening_that_makes_little_of_the_difference_holds_in_part() {
-    for (share, verdict) in [(0.6, Verdict::Holds), (0.3, Verdict::InPart), (0.01, Verdict::Fails)]
+    for (share, verdict) in
+        [(0.6, ClaimVerdict::Holds), (0.3, ClaimVerdict::InPart), (0.01, ClaimVerdict::Fails)]
     {
         let mut evidence = agreeing();
         each(&mut evidence, "dry", |p| p.excess_s[1] = (1.0 - share) * p.excess_s[0]);
@@ -169,7 +170,8 @@ fn loosening_that_makes_little_of_the_difference_holds_in_part() {
 
 #[test]
 fn a_split_that_the_figure_could_just_show_holds_in_part() {
-    for (second, verdict) in [(0.6, Verdict::Holds), (0.2, Verdict::InPart), (0.02, Verdict::Fails)]
+    for (second, verdict) in
+        [(0.6, ClaimVerdict::Holds), (0.2, ClaimVerdict::InPart), (0.02, ClaimVerdict::Fails)]
     {
         let mut evidence = agreeing();
         each(&mut evidence, "motor", |p| {
@@ -181,7 +183,7 @@ fn a_split_that_the_figure_could_just_show_holds_in_part() {
 
 #[test]
 fn a_claim_that_more_speeds_break_than_meet_fails() {
-    for (from_m_s, verdict) in [(0.45, Verdict::InPart), (0.3, Verdict::Fails)] {
+    for (from_m_s, verdict) in [(0.45, ClaimVerdict::InPart), (0.3, ClaimVerdict::Fails)] {
         let mut evidence = agreeing();
         // From 0.45 m/s on there are six of the twelve speeds, from 0.3 m/s on seven.
         each(&mut evidence, "motor", |p| {
@@ -199,7 +201,7 @@ fn claims_without_numbers_are_not_decidable() {
     let nothing = Evidence { viscosity_over_modulus_s: f64::NAN, ..Evidence::default() };
     for evaluator in claims().unwrap() {
         let verdict = evaluator.decide(&nothing).verdict;
-        assert_eq!(verdict, Verdict::NotDecidable, "{}", evaluator.claim.id);
+        assert_eq!(verdict, ClaimVerdict::NotDecidable, "{}", evaluator.claim.id);
     }
 }
 
@@ -210,7 +212,7 @@ fn a_difference_within_the_accuracy_decides_nothing() {
         p.tof_incident_s = dry(p.speed_m_s).0 * (1.0 + 1e-7);
         p.accuracy_reached = 1e-6;
     });
-    assert_eq!(decide("motor-above", &evidence).verdict, Verdict::NotDecidable);
+    assert_eq!(decide("motor-above", &evidence).verdict, ClaimVerdict::NotDecidable);
 }
 
 #[test]
@@ -219,9 +221,9 @@ fn a_crossing_elsewhere_is_one_crossing_with_a_speed_and_not_that_of_the_paper()
     each(&mut evidence, "pump", |p| {
         p.tof_incident_s = dry(p.speed_m_s).0 * (p.speed_m_s / 0.53).powf(0.02);
     });
-    assert_eq!(decide("pump-crosses-once", &evidence).verdict, Verdict::Holds);
+    assert_eq!(decide("pump-crosses-once", &evidence).verdict, ClaimVerdict::Holds);
     let finding = decide("pump-crossing", &evidence);
-    assert_eq!(finding.verdict, Verdict::Fails);
+    assert_eq!(finding.verdict, ClaimVerdict::Fails);
     // The ratio is linear in ln v up to 0.02² over the interval.
     assert!((finding.value - 0.53).abs() < 1e-3, "{finding:?}");
 }
@@ -233,7 +235,7 @@ fn a_ratio_that_is_1_within_its_accuracy_crosses_nowhere_for_sure() {
         p.tof_incident_s = dry(p.speed_m_s).0 * (1.0 + 1e-7 * p.speed_m_s.ln());
         p.accuracy_reached = 1e-6;
     });
-    assert_eq!(decide("pump-crosses-once", &evidence).verdict, Verdict::NotDecidable);
+    assert_eq!(decide("pump-crosses-once", &evidence).verdict, ClaimVerdict::NotDecidable);
 }
 
 #[test]
@@ -244,12 +246,12 @@ fn a_verdict_that_one_draw_changes_is_not_decidable_and_has_a_range() {
     let draws = [printed.clone(), draw];
     let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &draws);
     let relaxation = evaluated.iter().find(|j| j.claim.id == "relaxation-time").unwrap();
-    assert_eq!(relaxation.finding.verdict, Verdict::Holds);
-    assert_eq!(relaxation.verdict, Verdict::NotDecidable);
+    assert_eq!(relaxation.finding.verdict, ClaimVerdict::Holds);
+    assert_eq!(relaxation.verdict, ClaimVerdict::NotDecidable);
     let rounded = relaxation.rounded.as_ref().unwrap();
     assert_eq!(rounded.range, Some((1.5e-7, 1.6e-7)));
     let other = evaluated.iter().find(|j| j.claim.id == "gear-below").unwrap();
-    assert_eq!(other.verdict, Verdict::Holds);
+    assert_eq!(other.verdict, ClaimVerdict::Holds);
 }
 
 /// The verdict on motor oil's ratios when one draw computes them to 1e-6 and
@@ -272,15 +274,15 @@ fn motor_above_with_a_draw(off: f64) -> EvaluatedClaim {
 #[test]
 fn a_draw_that_is_too_coarse_to_tell_but_lies_on_the_same_side_flips_nothing() {
     let evaluated = motor_above_with_a_draw(1e-7);
-    assert_eq!(evaluated.verdict, Verdict::Holds, "{evaluated:?}");
+    assert_eq!(evaluated.verdict, ClaimVerdict::Holds, "{evaluated:?}");
     assert_eq!(evaluated.rounded.unwrap().open, 1);
 }
 
 #[test]
 fn a_draw_on_the_other_side_flips_however_coarse_it_is() {
     let evaluated = motor_above_with_a_draw(-1e-7);
-    assert_eq!(evaluated.finding.verdict, Verdict::Holds);
-    assert_eq!(evaluated.verdict, Verdict::NotDecidable);
+    assert_eq!(evaluated.finding.verdict, ClaimVerdict::Holds);
+    assert_eq!(evaluated.verdict, ClaimVerdict::NotDecidable);
     // One ratio of several is below 1 then.
     assert_eq!(evaluated.rounded.unwrap().verdicts, [0, 1, 0, 0]);
 }
@@ -292,7 +294,7 @@ fn the_page_tells_the_range_of_what_rounding_flips_and_how_many_draws_have_a_val
     each(&mut draw, "pump", |p| p.tof_incident_s *= 1.1);
     let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &[printed.clone(), draw]);
     let crossing = evaluated.iter().find(|j| j.claim.id == "pump-crossing");
-    assert_eq!(crossing.unwrap().verdict, Verdict::NotDecidable);
+    assert_eq!(crossing.unwrap().verdict, ClaimVerdict::NotDecidable);
     let page = claims_markdown(&evaluated, "as made up");
     let line =
         "2 draws: holds in 1, fails in 1; computed: 1.09999 to 1.09999 m/s in the 1 that have it.";

@@ -2,7 +2,7 @@
 
 use super::Group;
 use hertzchain_chain::laws::{Nature, Source};
-use hertzchain_chain::{Chain, Material, Pair, Section};
+use hertzchain_chain::{BeadPair, Chain, Material, Section};
 use hertzchain_experiment::{Experiment, LawSpec};
 
 pub(super) fn section(chain: &Chain, contact: usize) -> Option<&Section> {
@@ -33,7 +33,7 @@ pub(super) fn sections(experiment: &Experiment, chain: &Chain) -> Vec<Group> {
             let (first, last) = (*section.contacts.start(), *section.contacts.end());
             let wet = if spec.wet { ", wet" } else { "" };
             let mut group = Group::new(format!("Contacts {first} to {last}{wet}"));
-            let pairs: Vec<Pair> = unlike(chain, section.contacts.clone().collect());
+            let pairs: Vec<BeadPair> = unlike(chain, section.contacts.clone().collect());
             spec.laws.iter().for_each(|law| describe_law(&mut group, law, &pairs));
             group
         })
@@ -41,13 +41,13 @@ pub(super) fn sections(experiment: &Experiment, chain: &Chain) -> Vec<Group> {
 }
 
 /// The pairs of contacts that differ from the one before.
-fn unlike(chain: &Chain, contacts: Vec<usize>) -> Vec<Pair> {
-    let mut pairs: Vec<Pair> = contacts.into_iter().filter_map(|c| chain.pair(c)).collect();
+fn unlike(chain: &Chain, contacts: Vec<usize>) -> Vec<BeadPair> {
+    let mut pairs: Vec<BeadPair> = contacts.into_iter().filter_map(|c| chain.pair(c)).collect();
     pairs.dedup();
     pairs
 }
 
-fn describe_law(group: &mut Group, law: &LawSpec, pairs: &[Pair]) {
+fn describe_law(group: &mut Group, law: &LawSpec, pairs: &[BeadPair]) {
     let info = &law.row.info;
     group.text(info.name, info.equation);
     for parameter in info.parameters {
@@ -61,15 +61,15 @@ fn describe_law(group: &mut Group, law: &LawSpec, pairs: &[Pair]) {
     }
 }
 
-fn derived(group: &mut Group, law: &LawSpec, name: String, parameter: &str, pairs: &[Pair]) {
+fn derived(group: &mut Group, law: &LawSpec, name: String, parameter: &str, pairs: &[BeadPair]) {
     let relaxation = match law.name() {
         "damping_brilliantov_1996" => Material::relaxation_time_1996_s,
         _ => Material::relaxation_time_s,
     };
     let (values, unit): (Vec<f64>, _) = match parameter {
-        "stiffness" => (pairs.iter().map(Pair::hertz_stiffness).collect(), "N/m^(3/2)"),
+        "stiffness" => (pairs.iter().map(BeadPair::hertz_stiffness).collect(), "N/m^(3/2)"),
         "relaxation_time" => {
-            let time = |pair: &Pair| pair.mean_relaxation_time_s(relaxation);
+            let time = |pair: &BeadPair| pair.mean_relaxation_time_s(relaxation);
             (pairs.iter().map(time).collect(), "s")
         }
         _ => return group.text(name, "from the materials"),

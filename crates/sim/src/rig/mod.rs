@@ -25,15 +25,17 @@ mod plan;
 mod recorder;
 mod shot;
 
+pub use self::{
+    campaign::{
+        CAMPAIGN_FILE, Done, Merged, Progress, Truth, campaign, merge, plan_of_folder, truth,
+    },
+    error::RigError,
+    forecast::forecast,
+    instruments::{
+        Amplifier, Converter, GateReading, Purpose, RandomStream, programmed, true_speed_m_s,
+    },
+    plan::{Case, Plan, Series},
+    recorder::{ForceTrace, Record, Window},
+    shot::{Bench, MeasuredShot, Shot, run_series, shoot},
+};
 pub use crate::Shard;
-pub use campaign::{
-    CAMPAIGN_FILE, Done, Merged, Progress, Truth, campaign, merge, plan_of_folder, truth,
-};
-pub use error::RigError;
-pub use forecast::forecast;
-pub use instruments::{
-    Amplifier, Converter, GateReading, Purpose, RandomStream, programmed, true_speed_m_s,
-};
-pub use plan::{Case, Plan, Series};
-pub use recorder::{ForceTrace, Record, Window};
-pub use shot::{Bench, MeasuredShot, Shot, run_series, shoot};

@@ -9,6 +9,8 @@ mod dimer;
 mod modes;
 mod uniform;
 
-pub use dimer::{BandEdges, Dimer};
-pub use modes::{Ends, Mode, normal_modes};
-pub use uniform::{UniformChain, contact_stiffness_n_m};
+pub use self::{
+    dimer::{BandEdges, Dimer},
+    modes::{Ends, Mode, normal_modes},
+    uniform::{UniformChain, contact_stiffness_n_m},
+};

@@ -5,5 +5,7 @@ mod shape;
 mod solver;
 mod wave;
 
-pub use shape::{SolitaryShape, kinetic_share_by_virial};
-pub use wave::SolitaryWave;
+pub use self::{
+    shape::{SolitaryShape, kinetic_share_by_virial},
+    wave::SolitaryWave,
+};

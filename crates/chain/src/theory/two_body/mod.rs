@@ -8,8 +8,10 @@ mod elastic;
 mod restitution;
 mod stepper;
 
-pub use elastic::{ElasticCollision, reduced_mass_kg};
-pub use restitution::{
-    ContactEnd, Rebound, ViscoelasticCollision, rebound, restitution_by_series,
-    restitution_coefficients,
+pub use self::{
+    elastic::{ElasticCollision, reduced_mass_kg},
+    restitution::{
+        ContactEnd, TwoBodyRebound, ViscoelasticCollision, rebound, restitution_by_series,
+        restitution_coefficients,
+    },
 };

@@ -34,7 +34,7 @@ pub struct ViscoelasticCollision {
 
 /// How a viscoelastic collision went.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rebound {
+pub struct TwoBodyRebound {
     /// Relative speed after over before, 0 to 1.
     pub restitution: f64,
     /// Duration of the contact: in seconds, or in units of (m v²/k)^{1/(n+1)}/v.
@@ -56,12 +56,12 @@ impl ViscoelasticCollision {
     ///
     /// # Errors
     /// As [`rebound`].
-    pub fn rebound(&self, end: ContactEnd) -> Result<Rebound, ChainError> {
+    pub fn rebound(&self, end: ContactEnd) -> Result<TwoBodyRebound, ChainError> {
         let n = self.elastic.exponent;
         let scaled = rebound(n, self.parameter(), end)?;
         let power = self.elastic.reduced_mass_kg * self.elastic.speed_m_s.powi(2);
         let length_m = (power / self.elastic.stiffness).powf(1.0 / (n + 1.0));
-        Ok(Rebound {
+        Ok(TwoBodyRebound {
             restitution: scaled.restitution,
             contact_time: scaled.contact_time * length_m / self.elastic.speed_m_s,
             largest_overlap: scaled.largest_overlap * length_m,
@@ -106,7 +106,11 @@ pub fn restitution_by_series(exponent: f64, parameter: f64) -> f64 {
 /// # Errors
 /// [`ChainError::Value`] unless 1 ≤ n ≤ 10 and 0 ≤ x ≤ 20,
 /// [`ChainError::NotConverged`] if the steps become too many.
-pub fn rebound(exponent: f64, parameter: f64, end: ContactEnd) -> Result<Rebound, ChainError> {
+pub fn rebound(
+    exponent: f64,
+    parameter: f64,
+    end: ContactEnd,
+) -> Result<TwoBodyRebound, ChainError> {
     check_range("force exponent", exponent, 1.0, 10.0, "between 1 and 10")?;
     check_range("damping parameter", parameter, 0.0, 20.0, "between 0 and 20")?;
     let scaled = Desingularised::new(exponent, parameter);
@@ -115,7 +119,7 @@ pub fn rebound(exponent: f64, parameter: f64, end: ContactEnd) -> Result<Rebound
     let last = advance_until(&rates, peak, |state| scaled.separated(state, end))?;
     let [peak_root, _, _] = peak;
     let [_, final_speed, contact_time] = last;
-    Ok(Rebound {
+    Ok(TwoBodyRebound {
         restitution: -final_speed,
         contact_time,
         largest_overlap: peak_root.powf(scaled.inverse_root),

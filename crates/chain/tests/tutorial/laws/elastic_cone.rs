@@ -1,5 +1,5 @@
 use super::{Closed, LawError, LawInfo, Nature, Parameter, Source, Term};
-use crate::material::Pair;
+use crate::material::BeadPair;
 use std::f64::consts::FRAC_2_PI;
 
 /// Bodies that touch with blunt conical tips [Sneddon1965]:
@@ -31,7 +31,7 @@ impl Term<1> for ElasticCone {
         Self { slope: values[0].unwrap_or(f64::NAN) }
     }
 
-    fn coefficients(&self, pair: &Pair) -> Result<[f64; 1], LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 1], LawError> {
         let compliance = pair.left.compliance_per_pa() + pair.right.compliance_per_pa();
         Ok([FRAC_2_PI / (compliance * self.slope)])
     }

@@ -2,7 +2,7 @@ use super::*;
 
 #[test]
 fn verdicts_differ_in_lightness_for_grey_print() {
-    let mut levels = Verdict::ALL.map(|v| v.colour().luminance());
+    let mut levels = ClaimVerdict::ALL.map(|v| v.colour().luminance());
     levels.sort_by(f64::total_cmp);
     // The two palest are distinguished by their symbols.
     assert!(levels[1] - levels[0] > 0.08 && levels[2] - levels[1] > 0.2, "{levels:?}");
@@ -12,7 +12,7 @@ fn verdicts_differ_in_lightness_for_grey_print() {
 fn a_table_grows_with_its_rows() {
     let table = |rows: usize| {
         let empty = VerdictMatrix::new(&["a", "b"]);
-        let full = (0..rows).fold(empty, |m, _| m.row("claim", &[Verdict::Holds]));
+        let full = (0..rows).fold(empty, |m, _| m.row("claim", &[ClaimVerdict::Holds]));
         full.figure().height_mm
     };
     assert!(table(20) > table(10));

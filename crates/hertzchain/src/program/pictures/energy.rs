@@ -1,6 +1,6 @@
 //! The energy of a shot against time.
 
-use super::Clock;
+use super::TimeAxis;
 use hertzchain_chain::wave::Budget;
 use hertzchain_experiment::Units;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Series};
@@ -46,7 +46,7 @@ fn dissipated_j(budget: &Budget) -> f64 {
 /// Where the energy is, against time, and what is missing.
 pub(crate) fn energy(budgets: &[Budget], units: Units, title: &str) -> Figure {
     let times_s: Vec<f64> = budgets.iter().map(|budget| budget.time_s).collect();
-    let clock = Clock::of(&times_s, units);
+    let clock = TimeAxis::of(&times_s, units);
     let times = clock.scaled(&times_s);
     let values = |of: fn(&Budget) -> f64| -> Vec<f64> { budgets.iter().map(of).collect() };
     let largest = PARTS.iter().map(|part| peak(&values(part.of)));

@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &prepared.warnings {
         print::note(&format!("warning: {warning}"));
     }
-    let shown = Shown::new();
+    let shown = CampaignProgress::new();
     let begun = Instant::now();
     let done = prepared.run(&|progress| shown.show(progress));
     shown.bar.finish_and_clear();
@@ -72,13 +72,13 @@ fn untriggered(done: &Done) -> Option<String> {
 }
 
 /// Progress: a bar in a terminal, a line for every tenth elsewhere.
-struct Shown {
+struct CampaignProgress {
     bar: ProgressBar,
     begun: Instant,
     drawn: bool,
 }
 
-impl Shown {
+impl CampaignProgress {
     fn new() -> Self {
         let bar = ProgressBar::new(0);
         let template = "{wide_bar} {pos}/{len} shots, {per_sec:.1}, {eta} left";

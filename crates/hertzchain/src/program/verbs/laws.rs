@@ -1,14 +1,14 @@
 //! `hertzchain laws`: every contact law, from the registry.
 
-use crate::bibliography::Work;
+use crate::bibliography::Publication;
 use crate::laws::{self, nature};
-use crate::program::arguments::Laws;
+use crate::program::arguments::LawsArguments;
 use crate::program::failure::Failure;
 use crate::program::{format, print};
 use hertzchain_chain::laws::{LawInfo, Parameter, Source};
 
 /// Runs the verb.
-pub(crate) fn run(arguments: &Laws) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &LawsArguments) -> Result<(), Failure> {
     let infos = laws::infos(arguments.name.as_deref())?;
     if arguments.json {
         return print::print_json(&laws::json(&infos));
@@ -33,7 +33,7 @@ fn as_text(info: &LawInfo) -> String {
 /// The work that a law is from, and its key in the bibliography.
 fn source(info: &LawInfo) -> String {
     let key = format!("[{}]", info.reference);
-    match Work::of_key(info.reference) {
+    match Publication::of_key(info.reference) {
         Some(work) => format!("{} {key}", work.lines().join("\n")),
         None => key,
     }

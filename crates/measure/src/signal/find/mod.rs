@@ -6,8 +6,10 @@ mod found;
 mod options;
 mod select;
 
-pub use found::{CompetingMaximum, Found, Normalisation, Pulse, PulseKind, QualityFlag};
-pub use options::{Channels, DigitiserRange, FindOptions, Polarity, PulseLimits};
+pub use self::{
+    found::{CompetingMaximum, Found, Normalisation, Pulse, PulseKind, QualityFlag},
+    options::{Channels, DigitiserRange, FindOptions, Polarity, PulseLimits},
+};
 
 use crate::error::{MeasureError, Result};
 use channel::{ChannelSignal, FIRST, FIRST_LOW, Smoothed};

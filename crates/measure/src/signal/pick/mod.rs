@@ -7,9 +7,8 @@ mod polynomial;
 mod shape;
 mod superposition;
 
+pub use self::{correlation::delay_by_cross_correlation, shape::Shape};
 pub(crate) use clipping::clipped_top;
-pub use correlation::delay_by_cross_correlation;
-pub use shape::Shape;
 
 use crate::error::{MeasureError, Result};
 use crate::signal::{

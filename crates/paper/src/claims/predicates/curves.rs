@@ -3,7 +3,7 @@
 use super::{branches, curves, missing};
 use crate::claims::evidence::TofRatio;
 use crate::claims::finding::{ClaimFinding, Comparisons};
-use crate::claims::{Branch, Claim, Curve, Evidence};
+use crate::claims::{Claim, Curve, Evidence, TofBranch};
 use hertzchain_measure::signal::PowerLaw;
 
 /// R² of the straight line in log–log is at least the threshold, for every
@@ -25,7 +25,7 @@ fn r_squared_above(least: f64, claim: &Claim, evidence: &Evidence) -> ClaimFindi
 /// Accuracy of R² = 1 − S/S₀, where S and S₀ are the sums of squares of N residuals
 /// and of ln T about its mean: errors of at most a in ln T change √S and √S₀ by
 /// at most a√N, so Δ = (2 √S a√N + a² N)/S₀ + (S/S₀) 2 a√N/√S₀.
-fn r_squared_accuracy(curve: &Curve, branch: Branch, fit: &PowerLaw) -> f64 {
+fn r_squared_accuracy(curve: &Curve, branch: TofBranch, fit: &PowerLaw) -> f64 {
     let logs: Vec<f64> = curve.tofs_s(branch).iter().map(|tof| tof.ln()).collect();
     let mean = logs.iter().sum::<f64>() / logs.len() as f64;
     let all: f64 = logs.iter().map(|log| (log - mean).powi(2)).sum();
@@ -67,7 +67,7 @@ fn accuracy(curve: &Curve) -> f64 {
 }
 
 /// Evaluates a fit: the value, its margin and their accuracy.
-type FitValue<'a> = &'a dyn Fn(&Curve, Branch) -> Option<(f64, f64, f64)>;
+type FitValue<'a> = &'a dyn Fn(&Curve, TofBranch) -> Option<(f64, f64, f64)>;
 
 fn each_fit(claim: &Claim, evidence: &Evidence, measure: FitValue<'_>) -> ClaimFinding {
     let Some(curves) = curves(claim, evidence) else {
@@ -280,7 +280,7 @@ pub(super) fn ratios_differ(claim: &Claim, evidence: &Evidence) -> ClaimFinding 
     let [one, other] = curves[..] else {
         return missing();
     };
-    let branch = Branch::Incident;
+    let branch = TofBranch::Incident;
     let unsure = |curve: &Curve| {
         let slopes = curve.slope_accuracies(branch);
         slopes.into_iter().fold(0.0, f64::max)

@@ -7,7 +7,7 @@ mod ratios;
 use super::claim::Predicate;
 use super::evidence::SPEED_SCATTER_M_S;
 use super::finding::{ClaimFinding, Comparisons};
-use super::{Branch, Claim, Curve, Evidence, MeasuredKind, ShotPoint};
+use super::{Claim, Curve, Evidence, MeasuredKind, ShotPoint, TofBranch};
 
 static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("pulses-separate", pulses_separate),
@@ -71,11 +71,11 @@ fn missing() -> ClaimFinding {
 }
 
 /// The branches of a claim; both when it names none.
-fn branches(claim: &Claim) -> Vec<Branch> {
-    let named = |branch: &Branch| {
+fn branches(claim: &Claim) -> Vec<TofBranch> {
+    let named = |branch: &TofBranch| {
         claim.branches.is_empty() || claim.branches.iter().any(|name| name == branch.name())
     };
-    Branch::BOTH.into_iter().filter(named).collect()
+    TofBranch::BOTH.into_iter().filter(named).collect()
 }
 
 /// The shots of a curve at the speeds of a claim.
@@ -192,7 +192,7 @@ fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     };
     let mut comparisons = Comparisons::default();
     for curve in curves {
-        let [incident, reflected] = Branch::BOTH.map(|branch| {
+        let [incident, reflected] = TofBranch::BOTH.map(|branch| {
             let slopes = curve.slopes_s2_m(branch).into_iter();
             slopes.zip(curve.slope_accuracies(branch))
         });
@@ -323,7 +323,7 @@ fn peaks_overlap(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
 
 /// The same of measured times of flight.
 fn tofs_overlap(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    overlap(claim, evidence, &Branch::BOTH.map(MeasuredKind::Tof))
+    overlap(claim, evidence, &TofBranch::BOTH.map(MeasuredKind::Tof))
 }
 
 /// The same of measured wet over dry incident times of flight.

@@ -2,7 +2,7 @@
 
 use super::missing;
 use crate::claims::evidence::TofRatio;
-use crate::claims::finding::{ClaimFinding, Comparisons, Distance, Verdict};
+use crate::claims::finding::{ClaimFinding, ClaimVerdict, Comparisons, Distance};
 use crate::claims::{Claim, Evidence};
 
 /// Every ratio at the claim's speeds lies below the threshold.
@@ -379,8 +379,8 @@ pub(super) fn crosses_at_speed(claim: &Claim, evidence: &Evidence) -> ClaimFindi
 /// The answer without a passage, which a ratio of 1 within its accuracy may hide.
 fn nowhere(expected: f64, open: bool) -> ClaimFinding {
     ClaimFinding {
-        verdict: if open { Verdict::NotDecidable } else { Verdict::Fails },
-        leaning: Verdict::Fails,
+        verdict: if open { ClaimVerdict::NotDecidable } else { ClaimVerdict::Fails },
+        leaning: ClaimVerdict::Fails,
         expected: Some(expected),
         ..ClaimFinding::without_numbers("no upward passage of 1")
     }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::claims::claims;
 
-fn row(reading: Reading, verdict: Verdict, claims: usize) -> ReadingRow {
+fn row(reading: Reading, verdict: ClaimVerdict, claims: usize) -> ReadingRow {
     ReadingRow { reading, verdicts: vec![verdict; claims], values: vec![0.0; claims] }
 }
 
@@ -9,8 +9,8 @@ fn row(reading: Reading, verdict: Verdict, claims: usize) -> ReadingRow {
 fn made_up(left_out: Vec<SwitchOptions>) -> ReadingScan {
     let claims: Vec<Claim> = claims().unwrap().into_iter().map(|j| j.claim).collect();
     let wet = Reading::default().with("wet_everywhere", "yes").unwrap();
-    let default = row(Reading::default(), Verdict::Fails, claims.len());
-    let single = row(wet, Verdict::Holds, claims.len());
+    let default = row(Reading::default(), ClaimVerdict::Fails, claims.len());
+    let single = row(wet, ClaimVerdict::Holds, claims.len());
     ReadingScan {
         product_of: vec![("wet_everywhere", vec!["no", "yes"])],
         left_out,

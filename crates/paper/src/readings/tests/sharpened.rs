@@ -1,5 +1,5 @@
 use super::*;
-use crate::claims::{Curve, Digitised, MeasuredKind, ShotPoint, Verdict, claims};
+use crate::claims::{ClaimVerdict, Curve, Digitised, MeasuredKind, ShotPoint, claims};
 use std::cell::RefCell;
 
 /// A peak whose difference from a measured one is this many standard errors,
@@ -54,7 +54,7 @@ fn shots_are_as_accurate_as_it_takes_to_tell_the_side_and_no_more() {
         let evidence = sharpened(&overlap, &[1e-2, 1e-4, 1e-6], &gather).unwrap();
         assert_eq!(asked.borrow()[..], [1e-2, 1e-4, 1e-6][..expected]);
         let finding = overlap[0].decide(&evidence);
-        assert_eq!(finding.leaning, Verdict::Holds);
+        assert_eq!(finding.leaning, ClaimVerdict::Holds);
         // The last one is nearer than the finest accuracy can resolve.
         assert_eq!(finding.is_open(), difference > 1.9999, "{finding:?}");
     }

@@ -7,12 +7,12 @@ use crate::program::failure::Failure;
 use crate::program::folder::Folder;
 use crate::program::print::{self, print};
 use comfy_table::{ContentArrangement, Table, presets};
-use hertzchain_paper::claims::{EvaluatedClaim, MEANING, Verdict, computed_text};
+use hertzchain_paper::claims::{ClaimVerdict, EvaluatedClaim, MEANING, computed_text};
 use hertzchain_paper::figures::{captions, figures};
 use hertzchain_paper::readings::ReadingScan;
 use hertzchain_paper::reproduce::{
-    PROVENANCE, Progress, ReproduceError, ReproduceOptions, Reproduction, remove_stale_files,
-    reproduce,
+    PROVENANCE, ReproduceError, ReproduceOptions, ReproduceProgress, Reproduction,
+    remove_stale_files, reproduce,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Write as _;
@@ -74,7 +74,7 @@ impl Bar {
     }
 }
 
-impl Progress for Bar {
+impl ReproduceProgress for Bar {
     fn begin(&self, stage: &str, steps: u64) {
         self.0.reset();
         self.0.set_length(steps);
@@ -146,7 +146,7 @@ fn verdicts(evaluated: &[EvaluatedClaim]) -> String {
         table.add_row(row);
     }
     let count = |verdict| evaluated.iter().filter(|j| j.verdict == verdict).count();
-    let counts = Verdict::ALL.map(|verdict| format!("{} {verdict}", count(verdict)));
+    let counts = ClaimVerdict::ALL.map(|verdict| format!("{} {verdict}", count(verdict)));
     format!("{table}\n{} claims: {}", evaluated.len(), counts.join(", "))
 }
 

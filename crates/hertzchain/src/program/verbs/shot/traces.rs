@@ -253,7 +253,7 @@ fn animation(
         Some(_) => page.mark(count - 1, "wall"),
         None => page,
     };
-    let clock = pictures::Clock::of(&trace.time_s, experiment.units());
+    let clock = pictures::TimeAxis::of(&trace.time_s, experiment.units());
     let force = if clock.unit.is_empty() { "" } else { "N" };
     let page = page.units((clock.scale, clock.unit), force);
     let wet = experiment.sections().iter().find(|section| section.wet);
