@@ -9,7 +9,7 @@ import random
 import struct
 import subprocess
 import wave
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 STEP_S = 1e-6
@@ -33,6 +33,10 @@ def main() -> None:
     text("scope.csv", "Time (s),CH1,CH3", zip(moments_s, sensor, (-2 * value for value in wall)))
     labview("shot.txt", zip(moments_s, summed))
     npy("shot.npy", summed)
+    # A shot between quiet, as raw counts of 0.1 mV.
+    quiet = noisy([0.0] * 20_000)
+    counts = [round(1e4 * volt) for volt in [*quiet, *summed, *quiet]]
+    Path("samples.raw").write_bytes(struct.pack(f"<{len(counts)}h", *counts))
     # Two shots in a file, with quiet between them.
     wav("run.wav", [*summed, *[0.0] * 20_000, *summed])
     text("run-shots.csv", "file,shot,case,speed", [("run.wav", 1, "dry", 0.5), ("run.wav", 2, "dry", 0.5)])
@@ -53,7 +57,7 @@ def sampled(moments_s: list[float], time_s: tuple[float, ...], values: tuple[flo
         yield 0.0 if moment_s < 0 else values[right - 1] + share * (values[right] - values[right - 1])
 
 
-def noisy(forces_n: Iterator[float]) -> list[float]:
+def noisy(forces_n: Iterable[float]) -> list[float]:
     return [GAIN * force_n + random.gauss(0, NOISE) for force_n in forces_n]
 
 

@@ -78,6 +78,7 @@ pub mod gauge;
 pub mod inference;
 mod input;
 pub mod laws;
+pub mod live;
 pub mod measure;
 mod missing;
 pub mod options;

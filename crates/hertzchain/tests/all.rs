@@ -18,6 +18,7 @@ mod fit_options;
 mod gauge;
 mod legends;
 mod limits;
+mod live;
 mod measure;
 mod pipes;
 mod program;

@@ -32,7 +32,7 @@ fn incident_us(speed_m_s: f64) -> f64 {
 }
 
 /// Samples at 1 MS/s: three bells and a ripple in place of noise.
-fn volts(speed_m_s: f64, wet: f64) -> Vec<f64> {
+pub(crate) fn volts(speed_m_s: f64, wet: f64) -> Vec<f64> {
     let incident = wet * incident_us(speed_m_s);
     let bell = |at: f64, i: f64| ((i - at) / 35.0).cosh().powi(-4);
     let sample = |i: f64| {
@@ -43,7 +43,7 @@ fn volts(speed_m_s: f64, wet: f64) -> Vec<f64> {
 }
 
 /// A file as a European oscilloscope exports it.
-fn write(path: &Path, volts: &[f64]) {
+pub(crate) fn write(path: &Path, volts: &[f64]) {
     let mut text = "Gerät;XY 1\n\nZeit (µs);Kanal A (V)\n".to_owned();
     for (i, volt) in volts.iter().enumerate() {
         text += &format!("{i},0;{volt:.6}\n").replace('.', ",");

@@ -137,8 +137,16 @@ fn first(samples: &[f64], test: impl Fn(f64) -> bool) -> Option<usize> {
     None
 }
 
-/// The shots of recordings that come in pieces, one recording after the other.
-pub(crate) struct AtLevel<I> {
+/// Returns the shots of recordings that come in pieces, one recording after the other, as soon as
+/// each is whole.
+pub fn shots_at_level(
+    pieces: impl Iterator<Item = Result<Record>>,
+    level: Level,
+) -> impl Iterator<Item = Result<Record>> {
+    AtLevel::new(pieces, level)
+}
+
+struct AtLevel<I> {
     pieces: I,
     level: Level,
     shots: u64,
@@ -156,7 +164,7 @@ struct UnderWay {
 }
 
 impl<I: Iterator<Item = Result<Record>>> AtLevel<I> {
-    pub(crate) fn new(pieces: I, level: Level) -> Self {
+    fn new(pieces: I, level: Level) -> Self {
         Self { pieces, level, shots: 0, under_way: None, ready: VecDeque::new() }
     }
 

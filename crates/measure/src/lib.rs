@@ -25,7 +25,7 @@ pub use self::{
     ambiguous::resolve_ambiguous,
     curves::{Case, Curves, Grouping, Laws, SpeedRow, UnmeasuredSpeed, WetOverDry},
     error::MeasureError,
-    level::Level,
+    level::{Level, shots_at_level},
     list::ShotList,
     run::{Cut, Measurement, Note, Options, Watch, measure, measure_records},
     shot::{Example, Shot},

@@ -97,6 +97,11 @@ impl ShotList {
         self.find(file, shot)?.case.as_deref()
     }
 
+    /// Whether another list says the same of a shot.
+    pub fn agrees_on(&self, other: &Self, shot: &Shot) -> bool {
+        self.find(&shot.file, shot.shot) == other.find(&shot.file, shot.shot)
+    }
+
     pub(crate) fn find(&self, file: &Path, shot: Option<u64>) -> Option<&ListEntry> {
         let lines = self.by_name.get(file.file_name()?)?;
         let mut entries = lines.iter().filter_map(|line| self.entries.get(*line));

@@ -1,7 +1,7 @@
 //! Recordings into shots, over threads, in the order in which they came.
 
 use crate::error::file_name;
-use crate::level::AtLevel;
+use crate::level::shots_at_level;
 use crate::records::{Parts, ReadOptions, Record, Records, read};
 use crate::separation::{Content, content};
 use crate::signal::{Bandwidth, Method, QualityFlag, SignalOptions};
@@ -52,7 +52,7 @@ pub enum Cut {
 }
 
 /// What came of a set of recordings.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Measurement {
     /// Every record that could be read, in order; some without times.
     pub shots: Vec<Shot>,
@@ -173,7 +173,7 @@ fn cut(
         return Box::new(records.map(move |record| record.map_err(&refused)));
     };
     let pieces = ReadOptions { parts: Parts::Pieces(PIECE), ..options.reading.clone() };
-    let cut = AtLevel::new(read(&pieces), level);
+    let cut = shots_at_level(read(&pieces), level);
     Box::new(cut.map(move |record| record.map_err(&refused)))
 }
 
@@ -240,6 +240,16 @@ pub(crate) fn stated_bandwidth(record: &Record, options: &Options) -> Option<Ban
 }
 
 impl Measurement {
+    /// Appends shots, refusals and notes of further recordings.
+    pub fn append(&mut self, other: Self) {
+        self.shots.extend(other.shots);
+        self.refused.extend(other.refused);
+        for Note { text, files } in other.notes {
+            files.iter().for_each(|file| self.note(&text, file));
+        }
+        self.bandwidth = self.bandwidth.or(other.bandwidth);
+    }
+
     fn add(&mut self, shots: Vec<Done>, record: &Record, options: &Options) {
         let several = shots.len() > 1;
         let mut notes = record.notes.clone();

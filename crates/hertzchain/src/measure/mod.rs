@@ -3,6 +3,7 @@
 mod results;
 
 pub use results::{json, write_json};
+pub(crate) use results::{law, row, shot};
 
 use crate::failure::Failure;
 use crate::options::CurveOptions;
@@ -60,8 +61,11 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Ve
     Ok((files, notes))
 }
 
-/// Recordings in a folder, and what else is there.
-fn inside(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
+/// Recordings in a folder, and what else is there, in order of their names.
+///
+/// # Errors
+/// A folder that can't be read.
+pub(crate) fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
     let refused = |error| Failure::User(format!("{}: {error}", folder.display()));
     let entries = fs::read_dir(folder).map_err(refused)?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -71,7 +75,12 @@ fn inside(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
         name.eq_ignore_ascii_case("readme")
     };
     let is_ours = |path: &PathBuf| path.is_file() && is_recording(path) && !is_readme(path);
-    let (found, others): (Vec<PathBuf>, Vec<PathBuf>) = paths.into_iter().partition(is_ours);
+    Ok(paths.into_iter().partition(is_ours))
+}
+
+/// The same of a folder that must have recordings.
+fn inside(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
+    let (found, others) = recordings(folder)?;
     match found.is_empty() {
         true => Err(Failure::User(format!(
             "{}: no recordings in it (of .h5, .mat, .csv, .txt, .npy, .npz, .wav, .tdms and their like)",

@@ -84,7 +84,7 @@ fn estimate(of: Estimate) -> Value {
     json!({ "value": of.value, "sigma": of.sigma })
 }
 
-fn shot(shot: &Shot) -> Value {
+pub(crate) fn shot(shot: &Shot) -> Value {
     let mut all = json!({
         "file": shot.file.display().to_string(),
         "shot": shot.shot,
@@ -137,7 +137,7 @@ fn case(case: &Case) -> Value {
     })
 }
 
-fn row(row: &SpeedRow) -> Value {
+pub(crate) fn row(row: &SpeedRow) -> Value {
     json!({
         "speed_m_s": estimate(row.speed_m_s),
         "speed_error_shots": row.speed_error_shots,
@@ -172,7 +172,7 @@ fn summary(of: &Summary) -> Value {
 }
 
 /// Whether a law is supported is null where nothing determines, and then says why.
-fn law(case: &Case, of: &Result<PowerLaw, FitError>) -> Value {
+pub(crate) fn law(case: &Case, of: &Result<PowerLaw, FitError>) -> Value {
     match of {
         Err(error) => json!({ "missing": error.to_string() }),
         Ok(law) => json!({

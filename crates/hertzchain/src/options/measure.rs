@@ -1,7 +1,7 @@
 //! Options of `measure`.
 
 use super::values::texts;
-use super::{Corner, Count, Filter, Frequency, Share, Speed, TimeUnit, Voltage};
+use super::{Corner, Count, Filter, Frequency, Share, Speed, Time, TimeUnit, Voltage};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -52,6 +52,45 @@ pub struct MeasureOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
+}
+
+/// Options of `live`.
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(default)]
+pub struct LiveOptions {
+    /// How recordings are read and measured.
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub measured: MeasureOptions,
+    /// Type of the samples of a stream, little-endian; those of its channels alternate
+    #[arg(long, value_enum, value_name = "TYPE", default_value = "i16")]
+    pub samples: SampleType,
+    /// Channels of a stream: 1 that sums both sensors, or 2, the sensor bead's and the wall's
+    #[arg(long, value_name = "COUNT", default_value = "1", value_parser = clap::value_parser!(u8).range(1..=2))]
+    pub channels: u8,
+    /// Experiment file or preset of the model that proposes the next measurement
+    #[arg(long, value_name = "FILE", requires = "free")]
+    pub model: Option<String>,
+    /// Numbers of the model that the next measurement is to determine best, such as eta,B
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "model")]
+    pub free: Vec<String>,
+    /// End when nothing has come for so long
+    #[arg(long, value_name = "TIME")]
+    pub stop_after: Option<Time>,
+}
+
+/// Types of samples by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SampleType {
+    /// Whole numbers of 16 bits
+    I16,
+    /// Whole numbers of 32 bits
+    I32,
+    /// Floating-point numbers of 32 bits
+    F32,
+    /// Floating-point numbers of 64 bits
+    F64,
 }
 
 /// What files leave open.

@@ -13,7 +13,10 @@ pub use self::{
         CurveOptions, DesignOptions, Filter, FitOptions, GaugeOptions, Method, ModelOptions,
         ParameterOptions, RecordOptions, WetForm, What,
     },
-    measure::{MeasureOptions, MethodName, PickOptions, ReadingOptions, RowsAre, Way},
+    measure::{
+        LiveOptions, MeasureOptions, MethodName, PickOptions, ReadingOptions, RowsAre, SampleType,
+        Way,
+    },
     simulate::{
         CampaignOptions, CheckOptions, ErrorControl, Input, Pick, ShotOptions, SimulationOptions,
         Solver, SweepOptions,
@@ -128,5 +131,5 @@ macro_rules! default_options {
 
 default_options!(
     CampaignOptions CheckOptions Input ShotOptions SimulationOptions SweepOptions CurveOptions DesignOptions FitOptions
-    GaugeOptions ModelOptions ParameterOptions RecordOptions MeasureOptions PickOptions ReadingOptions
+    GaugeOptions ModelOptions ParameterOptions RecordOptions LiveOptions MeasureOptions PickOptions ReadingOptions
 );

@@ -3,8 +3,8 @@
 #[cfg(feature = "explore")]
 use crate::options::Input;
 use crate::options::{
-    CampaignOptions, CheckOptions, DesignOptions, FitOptions, GaugeOptions, MeasureOptions,
-    ShotOptions, SweepOptions,
+    CampaignOptions, CheckOptions, DesignOptions, FitOptions, GaugeOptions, LiveOptions,
+    MeasureOptions, ShotOptions, SweepOptions,
 };
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
@@ -49,6 +49,8 @@ pub(crate) enum Verb {
     Campaign(CampaignOptions),
     /// Measure times of flight on recordings of any rig, with errors and curves
     Measure(MeasureOptions),
+    /// Measure shots as they are recorded: in a folder (DIR), on standard input (-) or from tcp://HOST:PORT
+    Live(LiveOptions),
     /// Fit contact parameters to times of flight, with errors one can trust
     Fit(FitOptions),
     /// Rank what to measure next so that parameters tighten most

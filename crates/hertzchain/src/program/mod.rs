@@ -57,6 +57,7 @@ fn run_verb(verb: Verb) -> Result<(), Failure> {
         Verb::Merge(arguments) => verbs::merge::run(&arguments),
         Verb::Campaign(arguments) => verbs::campaign::run(&arguments),
         Verb::Measure(arguments) => verbs::measure::run(&arguments),
+        Verb::Live(arguments) => verbs::live::run(&arguments),
         Verb::Fit(arguments) => verbs::fit::run(&arguments),
         Verb::Design(arguments) => verbs::design::run(&arguments),
         Verb::Gauge(arguments) => verbs::gauge::run(&arguments),

@@ -17,21 +17,24 @@ mod record;
 #[cfg(feature = "hdf5")]
 mod series;
 mod stored;
+mod stream;
 mod tdms;
 mod text;
 mod wav;
 
+pub use self::{
+    files::{
+        Files, no_formula, peek, remove_copies, remove_left_behind, seekable, text,
+        without_controls, write_whole,
+    },
+    options::{Parts, ReadOptions, Rows},
+    read::{Records, is_recording, read},
+    record::{Channel, Record},
+    stream::{SampleKind, StreamFormat, stream_pieces, write_npy},
+};
 #[cfg(feature = "hdf5")]
 pub use self::{
     hdf5::ColumnFile,
-    options::{Parts, ReadOptions, Rows},
-    read::{Records, is_recording, read},
-};
-pub use files::{
-    Files, no_formula, peek, remove_copies, remove_left_behind, seekable, text, without_controls,
-    write_whole,
+    series::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify},
 };
 pub(crate) use record::extremes;
-pub use record::{Channel, Record};
-#[cfg(feature = "hdf5")]
-pub use series::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify};

@@ -2,7 +2,7 @@
 
 mod pictures;
 mod report;
-mod summary;
+pub(super) mod summary;
 
 use crate::measure;
 use crate::options::MeasureOptions as Arguments;
@@ -103,22 +103,40 @@ fn write(
     measured: &Measurement,
     (curves, reference): (&Curves, &str),
 ) -> Result<(), Failure> {
-    folder.write_with("shots.csv", |out| write_shots(&measured.shots, curves, out))?;
-    folder.write_with("measured.json", |out| measure::write_json(measured, curves, out))?;
+    tables(&mut folder, measured, curves)?;
     if let Some(figure) = pictures::signals(&measured.examples) {
         folder.figure("signals", &figure)?;
     }
+    if !curves.cases.is_empty() {
+        folder.figure("times-of-flight", &pictures::times(curves))?;
+    }
+    if has_ratios(curves) {
+        folder.figure("ratios", &pictures::ratios(curves, reference))?;
+    }
+    print::written(&folder.finish()?);
+    Ok(())
+}
+
+/// Every table, and everything as JSON.
+pub(super) fn tables(
+    folder: &mut Folder,
+    measured: &Measurement,
+    curves: &Curves,
+) -> Result<(), Failure> {
+    folder.write_with("shots.csv", |out| write_shots(&measured.shots, curves, out))?;
+    folder.write_with("measured.json", |out| measure::write_json(measured, curves, out))?;
     if !(curves.cases.is_empty() && curves.unmeasured.is_empty()) {
         folder.write("speeds.csv", speeds_csv(curves).as_bytes())?;
     }
     if !curves.cases.is_empty() {
         folder.write("power-laws.csv", laws_csv(curves).as_bytes())?;
-        folder.figure("times-of-flight", &pictures::times(curves))?;
     }
-    if curves.ratios.iter().any(|wet| !wet.incident.is_empty()) {
+    if has_ratios(curves) {
         folder.write("ratios.csv", ratios_csv(curves).as_bytes())?;
-        folder.figure("ratios", &pictures::ratios(curves, reference))?;
     }
-    print::written(&folder.finish()?);
     Ok(())
+}
+
+fn has_ratios(curves: &Curves) -> bool {
+    curves.ratios.iter().any(|wet| !wet.incident.is_empty())
 }

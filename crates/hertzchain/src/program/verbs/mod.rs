@@ -9,6 +9,7 @@ pub(crate) mod explore;
 pub(crate) mod fit;
 pub(crate) mod gauge;
 pub(crate) mod laws;
+pub(crate) mod live;
 pub(crate) mod man;
 pub(crate) mod measure;
 pub(crate) mod merge;

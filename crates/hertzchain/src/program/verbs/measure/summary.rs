@@ -13,7 +13,11 @@ const MOST_SHOTS: usize = 30;
 const ROUNDING: f64 = 1e-12;
 
 /// Tables and fits.
-pub(super) fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
+pub(in crate::program::verbs) fn text(
+    measured: &Measurement,
+    curves: &Curves,
+    reference: &str,
+) -> String {
     let mut text = counted(measured) + "\n";
     let few = curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS;
     if few && !measured.shots.is_empty() {
@@ -60,11 +64,11 @@ fn counted(measured: &Measurement) -> String {
     )
 }
 
-fn named(case: &str) -> &str {
+pub(in crate::program::verbs) fn named(case: &str) -> &str {
     if case.is_empty() { "all shots" } else { case }
 }
 
-fn micro(of: Estimate) -> String {
+pub(in crate::program::verbs) fn micro(of: Estimate) -> String {
     let (value, error) = with_error(1e6 * of.value, 1e6 * of.sigma);
     format!("{value} ± {error}")
 }
@@ -158,7 +162,11 @@ fn curve(case: &Case) -> String {
 
 /// A fit, evaluated; too few speeds for one are plain to see. Errors are widened to
 /// the points' scatter where that is larger.
-fn law(name: &str, case: &Case, law: &Result<PowerLaw, FitError>) -> String {
+pub(in crate::program::verbs) fn law(
+    name: &str,
+    case: &Case,
+    law: &Result<PowerLaw, FitError>,
+) -> String {
     let Ok(law) = law else { return String::new() };
     // Of equal shots, what the arithmetic rounds is no error.
     let alike = law.prefactor_error < ROUNDING * law.prefactor;

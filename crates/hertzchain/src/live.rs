@@ -1,0 +1,124 @@
+//! `live`: recordings of a folder, measured as they appear.
+
+use crate::failure::Failure;
+use crate::measure::{self, MeasureResult};
+use crate::options::MeasureOptions;
+use hertzchain_measure::{Curves, Measurement, Options, ShotList};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// Size of a file and when it last changed.
+type Stamp = (u64, Option<SystemTime>);
+
+/// Recordings of a folder, each measured once it has not changed between two updates, and again when
+/// it or its line in the table of shots has changed.
+///
+/// It keeps nothing that the folder does not have: a new one over the same folder has the same shots.
+///
+/// ```
+/// use hertzchain::live::LiveMeasurement;
+/// use hertzchain::prelude::*;
+///
+/// let folder = std::env::temp_dir().join(format!("live-{}", std::process::id()));
+/// std::fs::create_dir_all(&folder)?;
+/// let mut live = LiveMeasurement::new(&folder, &MeasureOptions::default())?;
+/// assert!(live.update()?.is_empty());
+/// assert!(live.result().shots.shots.is_empty());
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct LiveMeasurement {
+    folder: PathBuf,
+    arguments: MeasureOptions,
+    options: Options,
+    list: Option<Stamp>,
+    seen: BTreeMap<PathBuf, Stamp>,
+    measured: BTreeMap<PathBuf, (Stamp, Measurement)>,
+}
+
+impl LiveMeasurement {
+    /// Starts on a folder, which may still be empty.
+    ///
+    /// # Errors
+    /// Options that do not go together; a table of shots that can't be used.
+    pub fn new(folder: &Path, arguments: &MeasureOptions) -> Result<Self, Failure> {
+        Ok(Self {
+            folder: folder.to_owned(),
+            arguments: arguments.clone(),
+            options: measure::options(arguments)?,
+            list: arguments.shots.as_deref().and_then(stamp),
+            seen: BTreeMap::new(),
+            measured: BTreeMap::new(),
+        })
+    }
+
+    /// Measures what has appeared or changed, and returns these files.
+    ///
+    /// # Errors
+    /// A folder that can't be read.
+    pub fn update(&mut self) -> Result<Vec<PathBuf>, Failure> {
+        self.update_list();
+        let (files, _) = measure::recordings(&self.folder)?;
+        let is_list = |file: &PathBuf| self.arguments.shots.as_ref() == Some(file);
+        let stamped = files.into_iter().filter(|file| !is_list(file));
+        let found: BTreeMap<PathBuf, Stamp> =
+            stamped.filter_map(|file| Some((file.clone(), stamp(&file)?))).collect();
+        self.measured.retain(|file, _| found.contains_key(file));
+        let is_measured = |file: &PathBuf, stamp: &Stamp| {
+            self.measured.get(file).is_some_and(|(measured, _)| measured == stamp)
+        };
+        let new = found.iter().filter(|(file, stamp)| {
+            self.seen.get(*file) == Some(stamp) && !is_measured(file, stamp)
+        });
+        let new: Vec<(PathBuf, Stamp)> = new.map(|(file, stamp)| (file.clone(), *stamp)).collect();
+        self.seen = found;
+        for (file, stamp) in &new {
+            let of_file = std::slice::from_ref(file);
+            let measured = hertzchain_measure::measure(of_file, &self.options, &());
+            self.measured.insert(file.clone(), (*stamp, measured));
+        }
+        Ok(new.into_iter().map(|(file, _)| file).collect())
+    }
+
+    /// Whether all recordings that the last update has seen are measured.
+    pub fn is_complete(&self) -> bool {
+        self.seen.keys().all(|file| self.measured.contains_key(file))
+    }
+
+    /// Returns all shots so far, in the order of their files' names, and their curves: what
+    /// [`measure`](crate::measure()) returns for the folder.
+    pub fn result(&self) -> MeasureResult {
+        let mut shots = Measurement::default();
+        for (_, of_file) in self.measured.values() {
+            shots.append(of_file.clone());
+        }
+        let curves = Curves::of(&shots.shots, &measure::grouping(&self.arguments));
+        MeasureResult { shots, curves }
+    }
+
+    /// Reads the table of shots again if it has changed, and forgets the files of which it says
+    /// something else now. One that can't be read is being written, and is read at the next update.
+    fn update_list(&mut self) {
+        let Some(path) = self.arguments.shots.as_deref() else { return };
+        let now = stamp(path);
+        if now == self.list {
+            return;
+        }
+        let Ok(list) = measure::list(path) else { return };
+        let before = self.options.list.replace(list.clone());
+        let agrees = |measured: &Measurement| {
+            let same =
+                |before: &ShotList| measured.shots.iter().all(|shot| list.agrees_on(before, shot));
+            before.as_ref().is_some_and(same)
+        };
+        self.measured.retain(|_, (_, measured)| agrees(measured));
+        self.list = now;
+    }
+}
+
+fn stamp(file: &Path) -> Option<Stamp> {
+    let metadata = fs::metadata(file).ok()?;
+    Some((metadata.len(), metadata.modified().ok()))
+}

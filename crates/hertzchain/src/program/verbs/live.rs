@@ -1,0 +1,277 @@
+//! `hertzchain live`: shots measured as they are recorded.
+
+use super::measure::{summary, tables};
+use crate::live::LiveMeasurement;
+use crate::measure::{self, MeasureResult};
+use crate::options::{
+    DesignOptions, Input, LiveOptions, MeasureOptions, ModelOptions, ParameterOptions,
+    ReadingOptions, RowsAre, SampleType,
+};
+use crate::program::failure::Failure;
+use crate::program::folder::Folder;
+use crate::program::{format, print};
+use crate::{design, input};
+use hertzchain_measure::records::{SampleKind, StreamFormat, stream_pieces, write_npy};
+use hertzchain_measure::{Case, Level, MeasureError, Shot, SpeedRow, shots_at_level};
+use serde_json::{Value, json};
+use std::fs;
+use std::io::{self, Read};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle, sleep};
+use std::time::{Duration, Instant};
+
+/// Time between two looks into the folder. A recording is measured after the second one.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Runs the verb.
+pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
+    let Source { folder, measured, recording } = Source::open(arguments)?;
+    let mut live = LiveMeasurement::new(&folder, &measured)?;
+    if let Some(out) = &measured.out {
+        Folder::open(out)?;
+    }
+    print::note(&format!("measuring what comes into {}; Ctrl-C ends", folder.display()));
+    let mut last = Instant::now();
+    loop {
+        // Asked before the look, which then sees what the stream has brought last.
+        let ended = recording.as_ref().is_some_and(JoinHandle::is_finished);
+        let files = live.update()?;
+        if !files.is_empty() {
+            last = Instant::now();
+            report(arguments, &measured, &live.result(), &files)?;
+        }
+        let stop = arguments.stop_after.map(|time| Duration::from_secs_f64(time.0));
+        if stop.is_some_and(|stop| last.elapsed() > stop) || (ended && live.is_complete()) {
+            break;
+        }
+        sleep(LOOK);
+    }
+    ended_well(recording)?;
+    let MeasureResult { shots, curves } = live.result();
+    if !measured.json {
+        print::print(&summary::text(&shots, &curves, &measured.reference))?;
+    }
+    measure::evaluate(&shots)
+}
+
+/// Where recordings come from.
+struct Source {
+    /// Where they lie.
+    folder: PathBuf,
+    /// How they are measured there.
+    measured: MeasureOptions,
+    /// What stores the shots of a stream in the folder.
+    recording: Option<JoinHandle<Result<(), MeasureError>>>,
+}
+
+impl Source {
+    fn open(arguments: &LiveOptions) -> Result<Self, Failure> {
+        let measured = arguments.measured.clone();
+        let [source] = measured.records.as_slice() else {
+            return Err(wrong("one source is followed: a folder, - or tcp://HOST:PORT"));
+        };
+        if measured.report.is_some() {
+            return Err(wrong("--report is written by measure, of the same recordings"));
+        }
+        let source = source.clone();
+        match source.to_str() {
+            Some("-") => Self::stream(io::stdin(), "standard input".to_owned(), arguments),
+            Some(address) if address.starts_with("tcp://") => {
+                let stream = TcpStream::connect(&address["tcp://".len()..])
+                    .map_err(|error| wrong(&format!("{address} can't be opened: {error}")))?;
+                Self::stream(stream, address.to_owned(), arguments)
+            }
+            _ if source.is_dir() => Ok(Self { folder: source, measured, recording: None }),
+            _ => Err(wrong(&format!(
+                "{} is no folder; live follows a folder, - (standard input) or tcp://HOST:PORT",
+                source.display()
+            ))),
+        }
+    }
+
+    /// Shots of a stream, each stored whole before it is measured.
+    fn stream(
+        reader: impl Read + Send + 'static,
+        name: String,
+        arguments: &LiveOptions,
+    ) -> Result<Self, Failure> {
+        let reading = &arguments.measured.reading;
+        let (Some(rate), Some(volts), Some(out)) =
+            (reading.rate, reading.level, &arguments.measured.out)
+        else {
+            return Err(wrong(
+                "a stream needs --rate, --level (in the unit of its samples) and --out, where its \
+                 shots are stored",
+            ));
+        };
+        let folder = out.join("records");
+        fs::create_dir_all(&folder)
+            .map_err(|error| wrong(&format!("cannot write into {}: {error}", folder.display())))?;
+        let level =
+            Level { volts: volts.0, samples: reading.shot_samples.map(|samples| samples.0) };
+        let format = StreamFormat {
+            rate_hz: rate.0,
+            channels: usize::from(arguments.channels),
+            kind: kind(arguments.samples),
+        };
+        let pieces = stream_pieces(name, reader, format);
+        let into = folder.clone();
+        let recording = thread::spawn(move || {
+            let next = stored(&into) + 1;
+            for (shot, number) in shots_at_level(pieces, level).zip(next..) {
+                let file = into.join(format!("shot-{number:06}.npy"));
+                write_npy(&file, &shot?, format.kind).map_err(|error| {
+                    MeasureError::Unwritable(file.display().to_string(), error.to_string())
+                })?;
+            }
+            Ok(())
+        });
+        let rows = (format.channels > 1).then_some(RowsAre::Times);
+        let reading = ReadingOptions {
+            level: None,
+            shot_samples: None,
+            whole: true,
+            rows: rows.or(reading.rows),
+            ..reading.clone()
+        };
+        let measured = MeasureOptions { reading, ..arguments.measured.clone() };
+        Ok(Self { folder, measured, recording: Some(recording) })
+    }
+}
+
+/// What has broken a stream off, if it has ended.
+fn ended_well(recording: Option<JoinHandle<Result<(), MeasureError>>>) -> Result<(), Failure> {
+    let Some(recording) = recording.filter(JoinHandle::is_finished) else {
+        return Ok(());
+    };
+    let ended = recording.join();
+    let broken = |_| Failure::Ours("storing the shots of the stream was broken off".to_owned());
+    ended.map_err(broken)?.map_err(|error| wrong(&error.to_string()))
+}
+
+/// Largest number of a stored shot; 0 for none.
+fn stored(folder: &Path) -> u64 {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let number = |entry: fs::DirEntry| {
+        let name = entry.file_name();
+        name.to_str()?.strip_prefix("shot-")?.strip_suffix(".npy")?.parse().ok()
+    };
+    entries.filter_map(number).max().unwrap_or(0)
+}
+
+fn kind(samples: SampleType) -> SampleKind {
+    match samples {
+        SampleType::I16 => SampleKind::I16,
+        SampleType::I32 => SampleKind::I32,
+        SampleType::F32 => SampleKind::F32,
+        SampleType::F64 => SampleKind::F64,
+    }
+}
+
+fn wrong(text: &str) -> Failure {
+    Failure::User(text.to_owned())
+}
+
+/// Prints the shots of new files, each with what it does to the mean and the power law, and what to
+/// measure next; writes the tables anew.
+fn report(
+    arguments: &LiveOptions,
+    measured: &MeasureOptions,
+    result: &MeasureResult,
+    files: &[PathBuf],
+) -> Result<(), Failure> {
+    if let Some(out) = &measured.out {
+        let mut folder = Folder::open(out)?;
+        tables(&mut folder, &result.shots, &result.curves)?;
+        folder.finish()?;
+    }
+    for refused in &result.shots.refused {
+        print::note(&format!("refused: {refused}"));
+    }
+    let new: Vec<&Shot> =
+        result.shots.shots.iter().filter(|shot| files.contains(&shot.file)).collect();
+    let next = new.last().and_then(|shot| next(arguments, result, &shot.case));
+    for (at, shot) in new.iter().enumerate() {
+        let next = next.as_ref().filter(|_| at + 1 == new.len());
+        let place = place(result, shot);
+        match measured.json {
+            true => print::print(&line_json(shot, place, next).to_string())?,
+            false => print::print(&line_text(shot, place, next))?,
+        }
+    }
+    Ok(())
+}
+
+/// The curve of a shot, and its row there; `None` for a shot that counts in none.
+fn place<'a>(result: &'a MeasureResult, shot: &Shot) -> Option<(&'a Case, &'a SpeedRow)> {
+    let speed_m_s = shot.speed_m_s?.value;
+    let case = result.curves.cases.iter().find(|case| case.name == shot.case)?;
+    let off = |row: &&SpeedRow| (row.speed_m_s.value - speed_m_s).abs();
+    Some((case, case.rows.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?))
+}
+
+/// What the model would measure next: by name, or why it proposes nothing.
+type Next = Result<String, Failure>;
+
+fn next(arguments: &LiveOptions, result: &MeasureResult, case: &str) -> Option<Next> {
+    let model = arguments.model.as_ref()?;
+    let file = Some(PathBuf::from(model)).filter(|file| file.exists());
+    let preset = file.is_none().then(|| model.clone());
+    let options = DesignOptions {
+        modelled: ModelOptions {
+            model: file.clone(),
+            preset: preset.clone(),
+            ..ModelOptions::default()
+        },
+        freed: ParameterOptions { free: arguments.free.clone(), ..ParameterOptions::default() },
+        ..DesignOptions::default()
+    };
+    let proposed = || {
+        let experiment = input::open(&Input { file, preset })?;
+        let (_, found) = design::design(&result.curve(case)?, &experiment, &options)?;
+        let best = found.design.ranked.first().map(|best| &found.candidates[best.candidate]);
+        best.map(|best| best.name.clone()).ok_or_else(|| wrong("nothing would help"))
+    };
+    Some(proposed())
+}
+
+fn line_text(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>) -> String {
+    let name = shot.file.file_name().unwrap_or_default().to_string_lossy();
+    let number = shot.shot.map_or(String::new(), |shot| format!(" {shot}"));
+    let speed = shot.speed_m_s.map(|speed| format!("  {} m/s", format::digits(speed.value, 4)));
+    let speed = speed.unwrap_or_default();
+    let times = match &shot.flight {
+        Ok(flight) => {
+            let reflected = flight.reflected_s.map_or("–".to_owned(), summary::micro);
+            format!("incident {} µs  reflected {reflected} µs", summary::micro(flight.incident_s))
+        }
+        Err(_) => "no time of flight".to_owned(),
+    };
+    let flags = Some(shot.flags()).filter(|flags| !flags.is_empty());
+    let flags = flags.map_or(String::new(), |flags| format!("  [{flags}]"));
+    let mut text = format!("{name}{number}{speed}  {times}{flags}\n");
+    if let Some((case, row)) = place {
+        let mean = summary::micro(row.incident_s.weighted);
+        let (shots, speed) = (row.shots.0, format::digits(row.speed_m_s.value, 4));
+        let named = summary::named(&case.name);
+        text += &format!("  mean {mean} µs of {shots} ({named}, {speed} m/s)\n");
+        let law = summary::law("incident", case, &case.laws.incident);
+        text += &(if law.is_empty() { law } else { format!("  {law}") });
+    }
+    text + &match next {
+        None => String::new(),
+        Some(Ok(best)) => format!("  next: {best}\n"),
+        Some(Err(error)) => format!("  next: not known yet: {error}\n"),
+    }
+}
+
+fn line_json(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>) -> Value {
+    json!({
+        "shot": measure::shot(shot),
+        "mean": place.map(|(_, row)| measure::row(row)),
+        "power_law_incident": place.map(|(case, _)| measure::law(case, &case.laws.incident)),
+        "next": next.and_then(|next| next.as_ref().ok()),
+        "next_missing": next.and_then(|next| next.as_ref().err()).map(ToString::to_string),
+    })
+}
