@@ -76,10 +76,10 @@ fn a_folder_that_fills_gives_the_tables_of_measure_also_after_a_kill() {
     let (into, out, measured) = (shots.to_str().unwrap(), all.join("live"), all.join("measured"));
     let arguments = [into, "--shots", &list, "--out", out.to_str().unwrap(), "--stop-after", STOP];
     let mut live = Live::start(&arguments);
-    for number in 0..2 {
+    for (number, speed) in SPEEDS.into_iter().enumerate().take(2) {
         record(&shots, Path::new(&list), number);
         let line = live.line();
-        assert_eq!(line["shot"]["speed_m_s"]["value"], SPEEDS[number], "{line}");
+        assert_eq!(line["shot"]["speed_m_s"]["value"], speed, "{line}");
         assert_eq!(line["mean"]["shots"], 1, "{line}");
     }
     live.program.kill().unwrap();
