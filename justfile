@@ -56,6 +56,10 @@ test-random *options:
     cargo build --release --locked -p hertzchain -p hertzchain-random
     target/release/hertzchain-random {{options}}
 
+# Coverage-guided fuzzing of a reader (needs cargo-fuzz): just fuzz records 3600
+fuzz target seconds="60":
+    bench/fuzz/run {{target}} {{seconds}}
+
 # Coverage of the stated errors of picked pulses: just bench-picking 20 --seed 7
 bench-picking *options:
     cargo run --release --locked -p hertzchain-picking -- {{options}}
