@@ -127,11 +127,11 @@ function refuse(error) {
   banner(error.message);
 }
 
-// ---- Results: a shot and a curve, asked for side by side.
+// ---- Results: a shot and a curve, asked for side by side; while a slider moves the shot comes first.
 
 function compute(draft) {
   shoot(draft);
-  sweep(draft);
+  if (!draft) sweep(false);
 }
 
 const shoot = newest(["shot"], async (draft) => {
@@ -145,6 +145,7 @@ const shoot = newest(["shot"], async (draft) => {
     if (!error.stopped) refuse(error);
   } finally {
     working(-1);
+    if (draft) sweep(true);
   }
 });
 
@@ -167,9 +168,9 @@ function takeShot(shot) {
   if (state.fresh) {
     state.fresh = false;
     // A first look: the pulse half-way to the wall.
-    state.time = state.linked ?? (shot.incident && shot.wall ? 0.5 * (shot.incident.time_s + shot.wall.time_s) : 0.6 * highest(motion));
+    state.time = state.linked?.time ?? (shot.incident && shot.wall ? 0.5 * (shot.incident.time_s + shot.wall.time_s) : 0.6 * highest(motion));
+    setMagnify(Number(state.linked?.magnify));
     state.linked = null;
-    setMagnify();
   }
   state.time = Math.min(state.time, shot.duration_s);
   drawShot();
@@ -181,14 +182,22 @@ function highest(motion) {
   return motion.sensor.indexOf(Math.max(...motion.sensor)) * motion.interval_s;
 }
 
+let later = 0;
+
+/** Draws numbers, row and signals; the rest once these are on the screen. */
 function drawShot() {
   drawTiles();
   plots.drawSignals(state);
+  showTime();
+  cancelAnimationFrame(later);
+  later = requestAnimationFrame(() => setTimeout(drawRest));
+}
+
+function drawRest() {
   plots.drawSpacetime(state);
   plots.drawEnergy(state);
   plots.drawCurve(state);
   drawTables();
-  showTime();
   tell();
 }
 
@@ -290,8 +299,8 @@ function drawTiles() {
 }
 
 function table(caption, titles, rows) {
-  const head = html("tr", {}, titles.map((title) => html("th", { scope: "col", class: "n" }, title)));
-  const body = rows.map((row) => html("tr", {}, row.map((cell) => html("td", { class: "n" }, cell))));
+  const head = html("tr", {}, titles.map((title, at) => html("th", { scope: "col", class: at ? "n" : null }, title)));
+  const body = rows.map((row) => html("tr", {}, row.map((cell, at) => html("td", { class: at ? "n" : null }, cell))));
   return html("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption }, html("table", {}, [html("caption", {}, caption), html("thead", {}, head), html("tbody", {}, body)]));
 }
 
@@ -315,12 +324,12 @@ function drawTables() {
 
 // ---- Time.
 
-function setMagnify() {
+function setMagnify(asked) {
   const usual = state.motion?.usual() ?? 1;
   const options = [...new Set([1, 10, 50, 100, 200, 500, 1000, 2000, usual])].sort((a, b) => a - b);
   const select = $("#magnify");
   select.replaceChildren(...options.map((value) => html("option", { value }, value === usual ? `${value} (auto)` : String(value))));
-  select.value = usual;
+  select.value = options.includes(asked) ? asked : usual;
 }
 
 function setTime(time) {
@@ -330,7 +339,7 @@ function setTime(time) {
 }
 
 /** Draws the row at the present time. */
-const show = (canvas, size) => drawRow(canvas, state.motion, state.time, Number($("#magnify").value) || 1, { most: units(state).q(state.motion.most, "N", 3) }, size);
+const show = (canvas, size) => drawRow(canvas, state.motion, state.time, Number($("#magnify").value) || 1, units(state).q(state.motion.most, "N", 3), size);
 
 function showTime() {
   const { motion, shot } = state;
@@ -515,8 +524,9 @@ async function copied(what) {
     await copy(what === "shell" ? shell(state) : python(state));
     return toast(what === "shell" ? "The command lines are on the clipboard" : "The Python lines are on the clipboard");
   }
-  const { text, whole, curveScale, curveView, time } = state;
-  const fragment = await packed({ text, whole, curveScale, curveView, time, reference: state.reference?.name });
+  const { text, whole, curveScale, curveView, time, pinned, data } = state;
+  const table = data?.points?.length ? { name: data.name, table: data.table } : undefined;
+  const fragment = await packed({ text, whole, curveScale, curveView, time, magnify: $("#magnify").value, reference: state.reference?.name, pinned: pinned?.text, data: table });
   history.replaceState(null, "", fragment);
   await copy(location.href);
   return toast("The link is on the clipboard; for another machine, put its part from # behind the address of the explorer there");
@@ -728,10 +738,12 @@ async function main() {
     showReference();
     if (link) {
       for (const key of ["whole", "curveScale", "curveView"]) if (link[key] !== undefined) setView(key, link[key]);
+      if (typeof link.pinned === "string") state.pinned = { name: "pinned", text: link.pinned };
       await setReference(link.reference ?? "");
     }
-    if (link && Number.isFinite(link.time)) state.linked = link.time;
+    if (link) state.linked = { time: Number.isFinite(link.time) ? link.time : null, magnify: link.magnify };
     await load(link?.text ?? began.experiment ?? presets[0].text);
+    if (typeof link?.data?.table === "string") await fit.takeText(String(link.data.name), link.data.table);
   } catch (error) {
     refuse(error);
   }

@@ -41,6 +41,14 @@ export function formula(text) {
 /** A colour of the page's theme. */
 export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
+const ruler = document.createElement("canvas").getContext("2d");
+
+/** The width of a text in the page's font, in pixels. */
+export function measured(text, size = 12) {
+  ruler.font = `${size}px ${getComputedStyle(document.body).fontFamily}`;
+  return ruler.measureText(text).width;
+}
+
 function axis(from, to, log) {
   if (log) {
     const [a, b] = [Math.log(from), Math.log(to)];
@@ -88,7 +96,7 @@ const BOTTOM = 36;
 export class Chart {
   constructor(place, name) {
     this.place = place;
-    this.root = svg("svg", { role: "img", tabindex: "0", "aria-label": name });
+    this.root = svg("svg", { role: "img", tabindex: "0", "aria-label": `${name}; arrow keys read its values` });
     this.tip = html("div", { class: "tip", hidden: true });
     place.replaceChildren(this.root, this.tip);
     this.name = name;
@@ -217,14 +225,13 @@ export class Chart {
     const shown = drawn.filter((one) => !one.quiet);
     const narrow = this.size.width < 430;
     for (const one of shown.reverse()) {
-      const text = svg("text", { y: 12, "text-anchor": "end", x }, narrow ? one.brief ?? one.name : one.name);
-      group.append(text);
-      const width = (narrow ? one.brief ?? one.name : one.name).length * 6.5;
-      const start = x - width - 20;
+      const name = narrow ? one.brief ?? one.name : one.name;
+      group.append(svg("text", { y: 12, "text-anchor": "end", x }, name));
+      const start = x - measured(name) - 21;
       if (one.points) group.append(one.square ? svg("rect", { x: start + 4, y: 4.5, width: 7, height: 7, fill: one.hollow ? "none" : one.colour, stroke: one.colour }) : svg("circle", { cx: start + 8, cy: 8, r: 3.5, fill: one.hollow ? "none" : one.colour, stroke: one.colour }));
       else if (one.base) group.append(svg("rect", { x: start + 3, y: 3, width: 11, height: 10, rx: 2, fill: one.colour, "fill-opacity": one.opacity ?? 0.85 }));
       else group.append(svg("line", { x1: start, x2: start + 15, y1: 8, y2: 8, stroke: one.colour, "stroke-width": 2.5, "stroke-dasharray": one.dash }));
-      x = start - 10;
+      x = start - 12;
     }
     return group;
   }

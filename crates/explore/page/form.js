@@ -1,7 +1,7 @@
 // Controls for everything that an experiment file knows, made from its JSON Schema.
 
 import { formula, html } from "./charts.js";
-import { brief, split, typed } from "./numbers.js";
+import { brief, split, titled, typed } from "./numbers.js";
 
 /** Tables in the order in which a row is thought of; what is not named here comes after. */
 const ORDER = ["striker", "beads", "contacts", "materials", "near_end", "far_end", "gaps", "track", "suspension", "driven", "initial", "sensors", "reading", "solver", "tension", "liquid", "units", "title", "rig", "campaign"];
@@ -23,7 +23,6 @@ const SUGGESTED_LAWS = {
   damping_viscoelastic: { relaxation_time: "0.34 us" }, damping_brilliantov_1996: { relaxation_time: "0.34 us" },
 };
 
-const titled = (key) => key.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
 const keyOf = (path) => JSON.stringify(path);
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
@@ -98,7 +97,7 @@ export class Form {
     const value = this.tree[key];
     const open = this.opened.get(key) ?? OPEN.has(key);
     const summary = html("summary", {}, [titled(key), html("small", { title: schema.description ?? "" }, schema.description ?? "")]);
-    return html("details", { class: "group", "data-group": key, open }, [summary, ...this.controls([key], schema, value, SLIDERS.has(key))]);
+    return html("details", { class: "group", "data-group": key, open, "aria-label": titled(key) }, [summary, ...this.controls([key], schema, value, SLIDERS.has(key))]);
   }
 
   /** Controls of a value, by the kind of its place. */
@@ -145,7 +144,7 @@ export class Form {
 
   member(path, title, children, removable = true) {
     const remove = removable && this.remover(path, title);
-    return html("section", { class: "member" }, [html("header", {}, [html("span", {}, title), remove || null]), ...children]);
+    return html("section", { class: "member", role: "group", "aria-label": title }, [html("header", {}, [html("span", {}, title), remove || null]), ...children]);
   }
 
   remover(path, title) {
@@ -175,7 +174,7 @@ export class Form {
         this.field([...here, one.name], { pattern: "1", type: one.unit === "1" ? ["string", "number"] : "string", description: one.meaning }, true, !one.required));
       const absent = (law?.parameters ?? []).filter((one) => given[one.name] === undefined);
       const add = absent.length ? this.select("Set…", absent.map((one) => [one.name, `${one.name.replaceAll("_", " ")}: ${one.meaning}`]), (key) => this.edit(here, { law: name, ...given, [key]: SUGGESTED_LAWS[name]?.[key] ?? "1" })) : null;
-      return html("section", { class: "law" }, [header, html("p", { class: "equation" }, formula(law?.equation ?? "")), ...fields, add, html("p", { class: "source" }, source(law))]);
+      return html("section", { class: "law", role: "group", "aria-label": name.replaceAll("_", " ") }, [header, html("p", { class: "equation" }, formula(law?.equation ?? "")), ...fields, add, html("p", { class: "source" }, source(law))]);
     });
     parts.push(this.select("Add a law…", this.laws.map((law) => [law.name, `${law.name.replaceAll("_", " ")} (${law.nature})`]), (name) => this.edit([...path, value.length], this.law(name))));
     return parts;
@@ -188,8 +187,8 @@ export class Form {
     return { law: name, ...Object.fromEntries(required.map((one) => [one.name, SUGGESTED_LAWS[name]?.[one.name] ?? "1"])) };
   }
 
-  select(title, options, choose) {
-    const list = html("select", { "aria-label": title, onchange: (event) => event.target.value && choose(event.target.value) }, [html("option", { value: "" }, title), ...options.map(([value, text]) => html("option", { value }, text))]);
+  select(title, options, choose, name = title) {
+    const list = html("select", { "aria-label": name, onchange: (event) => event.target.value && choose(event.target.value) }, [html("option", { value: "" }, title), ...options.map(([value, text]) => html("option", { value }, text))]);
     return html("div", { class: "add" }, list);
   }
 
@@ -197,7 +196,8 @@ export class Form {
     const absent = Object.entries(schema.properties).filter(([key, of]) => value[key] === undefined && key !== without && of.const === undefined);
     if (!absent.length) return null;
     const add = (key) => this.edit([...path, key], this.fresh(schema.properties[key], key));
-    return this.select(title, absent.map(([key, of]) => [key, `${key.replaceAll("_", " ")}: ${(of.description ?? "").split(/; default|, in |, from /)[0]}`.slice(0, 90)]), add);
+    const where = path.map((step) => (Number.isInteger(step) ? step + 1 : titled(step))).join(" ");
+    return this.select(title, absent.map(([key, of]) => [key, `${key.replaceAll("_", " ")}: ${(of.description ?? "").split(/; default|, in |, from /)[0]}`.slice(0, 90)]), add, where ? `Add to ${where}` : title);
   }
 
   /** Adds an entry with a name of the user's choice: a material. */
