@@ -113,8 +113,8 @@ export class Fit {
 
   recorded(data) {
     const { shots } = data.measured;
-    const seen = shots.find((shot) => shot.passing);
-    if (seen) data.picks = { passing: seen.passing, wall: seen.wall, returning: seen.returning };
+    const seen = shots.find((shot) => shot.incident);
+    if (seen) data.picks = { incident: seen.incident, wall: seen.wall, reflected: seen.reflected };
     const speed = split(typed(this.options.speed));
     if (seen && speed && !data.points?.length) {
       const value = speed.value * ({ "mm/s": 1e-3, "cm/s": 1e-2 }[speed.unit] ?? 1);
