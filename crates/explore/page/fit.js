@@ -2,7 +2,7 @@
 
 import { ask, cancel, encoded, progress } from "./engine.js";
 import { Chart, colour, html } from "./charts.js";
-import { plain, split, titled, typed, withError } from "./numbers.js";
+import { plain, quantity, split, titled, typed, withError } from "./numbers.js";
 
 /** Largest file that the page takes, in bytes. */
 const LARGEST = 64 * 1024 * 1024;
@@ -207,7 +207,7 @@ export class Fit {
     const label = (at) => `${at + 1} ${this.label(parameters[at].name)}`;
     const rows = parameters.map((one, at) => html("tr", {}, [
       html("th", { scope: "row" }, label(at)),
-      html("td", {}, one.determined ? withError(one.value, one.standard_error, one.unit === "1" ? "" : one.unit) : `${plain(one.value, 4)} ${one.unit}, not determined`),
+      html("td", {}, one.determined ? withError(one.value, one.standard_error, one.unit === "1" ? "" : one.unit) : `${quantity(one.value, one.unit === "1" ? "" : one.unit)}, not determined`),
     ]));
     const head = (names) => html("thead", {}, html("tr", {}, names.map((name) => html("th", { scope: "col" }, name))));
     const parts = [html("h3", {}, "Result"), html("table", { class: "result" }, [head(["Number", "Value ± error"]), html("tbody", {}, rows)])];

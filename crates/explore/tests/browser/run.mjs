@@ -437,7 +437,7 @@ const tests = {
     await page.context().close();
   },
 
-  async "a fit ends with values and errors"() {
+  async "a fit ends with values and errors, or says what is not determined"() {
     const page = await opened();
     await page.click("#tab-fit");
     await page.getByRole("button", { name: "Noisy data of this row" }).click();
@@ -449,6 +449,9 @@ const tests = {
     await look(page, "fit");
     const found = await page.innerText("#pane-fit table.result >> nth=0");
     assert.match(found, /±/);
+    for (const name of [/Poisson ratio/, /Shear viscosity/]) await page.getByRole("checkbox", { name }).check();
+    await page.getByRole("button", { name: "Fit", exact: true }).click();
+    await has(page, "#pane-fit", "Not determined:");
     await page.context().close();
   },
 
