@@ -9,6 +9,7 @@ import { plain, parts as quantityParts, quantity } from "./numbers.js";
 import { Plots, interesting, units } from "./plots.js";
 import { Motion, drawRow } from "./row.js";
 import { SCENES } from "./scenes.js";
+import { Story } from "./story.js";
 
 const $ = (selector) => document.querySelector(selector);
 const still = matchMedia("(prefers-reduced-motion: reduce)");
@@ -29,17 +30,16 @@ const state = {
 let plots;
 let form;
 let fit;
-let scene = null;
-let step = 0;
+let story;
 let playing = false;
 let asked = 0;
 
 // ---- The experiment: one text, from which all else follows.
 
 /** Shows another experiment. */
-async function load(text, { keepScene = false } = {}) {
+async function load(text) {
   form.forget();
-  if (!keepScene) endScene();
+  story.end();
   state.fresh = true;
   await change([], { text });
 }
@@ -198,7 +198,7 @@ function drawRest() {
   plots.drawEnergy(state);
   plots.drawCurve(state);
   drawTables();
-  tell();
+  story.tell();
 }
 
 const sweep = newest(["curve", "reference"], async (draft) => {
@@ -231,7 +231,7 @@ const sweep = newest(["curve", "reference"], async (draft) => {
   }
   plots.drawCurve(state);
   drawTables();
-  tell();
+  story.tell();
 });
 
 /** The reference's curve at the same speeds. */
@@ -411,71 +411,17 @@ function toast(text) {
 
 // ---- Guided scenes.
 
-async function begin(id) {
-  scene = SCENES.find((one) => one.id === id) ?? null;
-  step = 0;
-  if (scene) await go(0);
-  else endScene();
-}
-
-async function go(at) {
-  // A step's row follows from all steps before it, so that any can be opened by itself.
-  step = at;
-  const upTo = scene.steps.slice(0, at + 1);
-  const from = upTo.findLastIndex((one) => one.preset);
-  const base = state.presets.find((one) => one.name === upTo[from].preset);
-  const edits = upTo.slice(from).flatMap((one) => one.edits ?? []);
-  const view = Object.assign({ curveView: "tof", whole: false, reference: null, play: false }, ...upTo.slice(from).map((one) => one.view ?? {}));
+/** Shows a row after edits as a step of a scene looks at it. */
+async function showStep(preset, edits, view) {
   for (const key of ["curveScale", "curveView", "whole"]) if (view[key] !== undefined) setView(key, view[key]);
-  const preset = state.presets.find((one) => one.name === view.reference);
-  state.reference = preset ? { name: preset.name, text: preset.text } : null;
+  const reference = state.presets.find((one) => one.name === view.reference);
+  state.reference = reference ? { name: reference.name, text: reference.text } : null;
   showReference();
   play(false);
   form.forget();
   state.fresh = true;
-  queued = { text: base.text, edits, draft: false };
+  queued = { text: state.presets.find((one) => one.name === preset).text, edits, draft: false };
   await check();
-  tell();
-  if (scene.steps[at].view?.play && !still.matches) {
-    setTime(0);
-    play(true);
-  }
-}
-
-function endScene() {
-  scene = null;
-  $("#scene").value = "";
-  $("#story").hidden = true;
-}
-
-/** Shows the scene's words, with the numbers of the moment. */
-function tell() {
-  const place = $("#story");
-  place.hidden = !scene;
-  if (!scene) return;
-  const last = step === scene.steps.length - 1;
-  const words = scene.steps[step].text;
-  const text = typeof words === "function" ? words(state) : words;
-  const key = JSON.stringify([scene.id, step, text]);
-  if (place.dataset.key === key) return;
-  const opened = place.dataset.answer === scene.id + step;
-  const focused = place.contains(document.activeElement) ? document.activeElement.dataset.go : null;
-  place.dataset.key = key;
-  const button = (name, act, of, primary) => html("button", { type: "button", "data-go": of, class: primary ? "primary" : undefined, onclick: act }, name);
-  const answer = html("p", { class: "answer", hidden: !opened }, formula(scene.answer));
-  const asking = last ? [html("p", { class: "question" }, scene.question), answer] : [];
-  const show = () => {
-    answer.hidden = false;
-    place.dataset.answer = scene.id + step;
-  };
-  place.replaceChildren(html("h2", {}, scene.title), html("p", {}, formula(text)), ...asking, html("div", { class: "steps" }, [
-    button("Back", () => go(step - 1), "back"),
-    last ? button("Show an answer", show, "next", true) : button("Next", () => go(step + 1), "next", true),
-    html("span", {}, `${step + 1} of ${scene.steps.length}`),
-    button("End the scene", endScene, "end"),
-  ]));
-  place.querySelector("[data-go=back]").disabled = step === 0;
-  if (focused) (place.querySelector(`[data-go=${focused}]:not(:disabled)`) ?? place.querySelector("[data-go=next]")).focus();
 }
 
 // ---- Files, links.
@@ -577,7 +523,7 @@ function theme(name) {
 
 function bind() {
   $("#preset").addEventListener("change", (event) => load(state.presets.find((one) => one.name === event.target.value).text));
-  $("#scene").addEventListener("change", (event) => begin(event.target.value));
+  $("#scene").addEventListener("change", (event) => story.begin(event.target.value));
   $("#open").addEventListener("click", () => $("#file").click());
   $("#file").addEventListener("change", (event) => take([...event.target.files]).then(() => (event.target.value = "")));
   $("#jump").addEventListener("click", () => {
@@ -723,6 +669,16 @@ async function main() {
       fit.show(state.tree);
       if (state.shot) plots.drawSignals(state);
       plots.drawCurve(state);
+    },
+  });
+  story = new Story($("#story"), {
+    state,
+    show: showStep,
+    ended: () => ($("#scene").value = ""),
+    playFromStart: () => {
+      if (still.matches) return;
+      setTime(0);
+      play(true);
     },
   });
   state.setSpeed = (speed) => change([{ path: ["striker", "speed"], value: state.outline?.dimensionless ? Number(speed.toPrecision(3)) : `${Number(speed.toPrecision(3))} m/s` }]);
