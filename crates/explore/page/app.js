@@ -138,7 +138,7 @@ const shoot = newest(["shot"], async (draft) => {
   working(1);
   try {
     const shot = await ask("shot", { verb: "shot", text: state.text, samples: draft ? SAMPLES.draft : SAMPLES.full, draft: Boolean(draft) });
-    takeShot(shot);
+    takeShot(shot, draft);
     if (!draft) announceShot();
   } catch (error) {
     if (error.mistakes?.length) form.mark(error.mistakes);
@@ -149,7 +149,7 @@ const shoot = newest(["shot"], async (draft) => {
   }
 });
 
-function takeShot(shot) {
+function takeShot(shot, draft) {
   const { motion } = shot;
   if (motion) {
     motion.sensor = decoded(motion.sensor_n);
@@ -173,7 +173,7 @@ function takeShot(shot) {
     state.linked = null;
   }
   state.time = Math.min(state.time, shot.duration_s);
-  drawShot();
+  drawShot(draft);
 }
 
 /** When the sensor bead's signal is largest, in s. */
@@ -185,18 +185,22 @@ function highest(motion) {
 let later = 0;
 
 /** Draws numbers, row and signals; the rest once these are on the screen. */
-function drawShot() {
+function drawShot(draft) {
+  // The row first, which asks for its size before anything else has changed.
+  showTime();
   drawTiles();
   plots.drawSignals(state);
-  showTime();
   cancelAnimationFrame(later);
-  later = requestAnimationFrame(() => setTimeout(drawRest));
+  later = requestAnimationFrame(() => setTimeout(drawRest, 0, draft));
 }
 
-function drawRest() {
+function drawRest(draft) {
   plots.drawSpacetime(state);
-  plots.drawEnergy(state);
-  plots.drawCurve(state);
+  if (!draft) {
+    // A draft has no energy, and its curve follows.
+    plots.drawEnergy(state);
+    plots.drawCurve(state);
+  }
   drawTables();
   story.tell();
 }
@@ -213,7 +217,7 @@ const sweep = newest(["curve", "reference"], async (draft) => {
   const speed = outline.speed_m_s;
   const [from, to] = outline.dimensionless || speed < RANGE[0] || speed > RANGE[1] ? [speed / 5, speed * 5] : RANGE;
   const speeds = { from_m_s: from, to_m_s: to, count: draft ? CURVE.draft : CURVE.full };
-  $("#curve").classList.add("stale");
+  $("#curve").classList.toggle("stale", !draft);
   try {
     const curve = await ask("curve", { verb: "batch", text, speeds });
     Object.assign(state, { curve, speeds });

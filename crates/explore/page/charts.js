@@ -38,14 +38,22 @@ export function formula(text) {
   return [...parts, text.slice(from)];
 }
 
-/** A colour of the page's theme. */
-export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const colours = new Map();
+
+/** A colour of the page's theme; asked for once, as each asking has the browser settle all styles. */
+export function colour(name) {
+  const key = `${name} ${document.documentElement.dataset.theme}`;
+  if (!colours.has(key)) colours.set(key, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return colours.get(key);
+}
 
 const ruler = document.createElement("canvas").getContext("2d");
+let family = null;
 
 /** The width of a text in the page's font, in pixels. */
 export function measured(text, size = 12) {
-  ruler.font = `${size}px ${getComputedStyle(document.body).fontFamily}`;
+  family ??= getComputedStyle(document.body).fontFamily;
+  ruler.font = `${size}px ${family}`;
   return ruler.measureText(text).width;
 }
 
@@ -106,14 +114,16 @@ export class Chart {
     this.root.addEventListener("pointerdown", (event) => this.choose(event));
     this.root.addEventListener("keydown", (event) => this.key(event));
     this.root.addEventListener("blur", () => this.leave());
-    new ResizeObserver(() => this.spec && this.draw(this.spec)).observe(place);
+    new ResizeObserver(() => {
+      this.size = null;
+      if (this.spec) this.draw(this.spec);
+    }).observe(place);
   }
 
   draw(spec) {
     this.spec = spec;
-    const width = Math.max(180, this.place.clientWidth);
-    const height = Math.max(120, this.place.clientHeight);
-    this.size = { width, height, inner: width - LEFT - RIGHT, tall: height - TOP - BOTTOM };
+    this.size ??= this.measure();
+    const { width, height } = this.size;
     const drawn = spec.series.filter((one) => one.x.length);
     if (!drawn.length) return this.empty();
     const range = (of, key, share) => {
@@ -133,6 +143,13 @@ export class Chart {
     this.root.replaceChildren(svg("defs", {}, bounds), this.axes(spec), inside, this.cursorLine, this.hoverLine, this.marks, this.legend(drawn));
     for (const mark of spec.marks ?? []) this.mark(mark);
     this.cursor(spec.cursor);
+  }
+
+  /** The place's size, which is read only when it has changed: reading it has the browser lay out the page. */
+  measure() {
+    const width = Math.max(180, this.place.clientWidth);
+    const height = Math.max(120, this.place.clientHeight);
+    return { width, height, inner: width - LEFT - RIGHT, tall: height - TOP - BOTTOM };
   }
 
   /** Nothing to draw: no axes either, which would promise something. */
