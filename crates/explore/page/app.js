@@ -68,12 +68,14 @@ const check = newest(["check"], async () => {
   working(1);
   // What is computed of an older text may keep all engines busy.
   const late = setTimeout(() => ["shot", "curve", "reference"].forEach(cancel), PATIENCE);
+  // A slider's shot waits for no check: the engine makes the same changes itself.
+  if (work.draft) shoot(true, { text: state.text, edits: work.edits });
   try {
     const reply = await ask("check", { verb: "check", text: work.text ?? state.text, edits: work.edits });
     Object.assign(state, { text: reply.text, tree: reply.tree ?? state.tree, mistakes: reply.mistakes });
     if (reply.outline) state.outline = reply.outline;
     showExperiment();
-    if (reply.outline && began === asked) compute(work.draft);
+    if (reply.outline && began === asked && !work.draft) compute();
   } catch (error) {
     if (work.text !== null) state.text = work.text;
     if (!error.stopped) refuse(error);
@@ -129,15 +131,15 @@ function refuse(error) {
 
 // ---- Results: a shot and a curve, asked for side by side; while a slider moves the shot comes first.
 
-function compute(draft) {
-  shoot(draft);
-  if (!draft) sweep(false);
+function compute() {
+  shoot(false);
+  sweep(false);
 }
 
-const shoot = newest(["shot"], async (draft) => {
+const shoot = newest(["shot"], async (draft, of = { text: state.text }) => {
   working(1);
   try {
-    const shot = await ask("shot", { verb: "shot", text: state.text, samples: draft ? SAMPLES.draft : SAMPLES.full, draft: Boolean(draft) });
+    const shot = await ask("shot", { verb: "shot", ...of, samples: draft ? SAMPLES.draft : SAMPLES.full, draft });
     takeShot(shot, draft);
     if (!draft) announceShot();
   } catch (error) {
