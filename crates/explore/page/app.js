@@ -147,7 +147,8 @@ const shoot = newest(["shot"], async (draft, of = { text: state.text }) => {
     if (!error.stopped) refuse(error);
   } finally {
     working(-1);
-    if (draft) sweep(true);
+    // The curve takes all cores: first the shot is on the screen.
+    if (draft) requestAnimationFrame(() => setTimeout(sweep, 0, true));
   }
 });
 
