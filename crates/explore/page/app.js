@@ -60,6 +60,9 @@ function merged(before, after) {
   return [...before.filter((one) => !places.has(JSON.stringify(one.path))), ...after];
 }
 
+/** Longest time by which a slider's shot is ahead of its check, in ms. */
+const HEAD_START = 60;
+
 const check = newest(["check"], async () => {
   const work = queued;
   if (!work) return;
@@ -68,14 +71,17 @@ const check = newest(["check"], async () => {
   working(1);
   // What is computed of an older text may keep all engines busy.
   const late = setTimeout(() => ["shot", "curve", "reference"].forEach(cancel), PATIENCE);
-  // A slider's shot waits for no check: the engine makes the same changes itself.
-  if (work.draft) shoot(true, { text: state.text, edits: work.edits });
   try {
+    // A slider's shot comes before its check: the engine makes the same changes itself.
+    if (work.draft) await Promise.race([shoot(true, { text: state.text, edits: work.edits }), new Promise((done) => setTimeout(done, HEAD_START))]);
     const reply = await ask("check", { verb: "check", text: work.text ?? state.text, edits: work.edits });
     Object.assign(state, { text: reply.text, tree: reply.tree ?? state.tree, mistakes: reply.mistakes });
     if (reply.outline) state.outline = reply.outline;
     showExperiment();
-    if (reply.outline && began === asked && !work.draft) compute();
+    if (!reply.outline || began !== asked) return;
+    if (!work.draft) compute();
+    // The curve takes all cores: first the shot is on the screen.
+    else requestAnimationFrame(() => setTimeout(sweep, 0, true));
   } catch (error) {
     if (work.text !== null) state.text = work.text;
     if (!error.stopped) refuse(error);
@@ -147,8 +153,6 @@ const shoot = newest(["shot"], async (draft, of = { text: state.text }) => {
     if (!error.stopped) refuse(error);
   } finally {
     working(-1);
-    // The curve takes all cores: first the shot is on the screen.
-    if (draft) requestAnimationFrame(() => setTimeout(sweep, 0, true));
   }
 });
 
