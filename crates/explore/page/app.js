@@ -9,6 +9,7 @@ import { plain, parts as quantityParts, quantity } from "./numbers.js";
 import { Plots, interesting, units } from "./plots.js";
 import { Motion, drawRow } from "./row.js";
 import { SCENES } from "./scenes.js";
+import { Story } from "./story.js";
 
 const $ = (selector) => document.querySelector(selector);
 const still = matchMedia("(prefers-reduced-motion: reduce)");
@@ -29,17 +30,16 @@ const state = {
 let plots;
 let form;
 let fit;
-let scene = null;
-let step = 0;
+let story;
 let playing = false;
 let asked = 0;
 
 // ---- The experiment: one text, from which all else follows.
 
 /** Shows another experiment. */
-async function load(text, { keepScene = false } = {}) {
+async function load(text) {
   form.forget();
-  if (!keepScene) endScene();
+  story.end();
   state.fresh = true;
   await change([], { text });
 }
@@ -60,6 +60,9 @@ function merged(before, after) {
   return [...before.filter((one) => !places.has(JSON.stringify(one.path))), ...after];
 }
 
+/** Longest time by which a slider's shot is ahead of its check, in ms. */
+const HEAD_START = 60;
+
 const check = newest(["check"], async () => {
   const work = queued;
   if (!work) return;
@@ -69,11 +72,16 @@ const check = newest(["check"], async () => {
   // What is computed of an older text may keep all engines busy.
   const late = setTimeout(() => ["shot", "curve", "reference"].forEach(cancel), PATIENCE);
   try {
+    // A slider's shot comes before its check: the engine makes the same changes itself.
+    if (work.draft) await Promise.race([shoot(true, { text: state.text, edits: work.edits }), new Promise((done) => setTimeout(done, HEAD_START))]);
     const reply = await ask("check", { verb: "check", text: work.text ?? state.text, edits: work.edits });
     Object.assign(state, { text: reply.text, tree: reply.tree ?? state.tree, mistakes: reply.mistakes });
     if (reply.outline) state.outline = reply.outline;
     showExperiment();
-    if (reply.outline && began === asked) compute(work.draft);
+    if (!reply.outline || began !== asked) return;
+    if (!work.draft) compute();
+    // The curve takes all cores: first the shot is on the screen.
+    else requestAnimationFrame(() => setTimeout(sweep, 0, true));
   } catch (error) {
     if (work.text !== null) state.text = work.text;
     if (!error.stopped) refuse(error);
@@ -127,18 +135,18 @@ function refuse(error) {
   banner(error.message);
 }
 
-// ---- Results: a shot and a curve, asked for side by side.
+// ---- Results: a shot and a curve, asked for side by side; while a slider moves the shot comes first.
 
-function compute(draft) {
-  shoot(draft);
-  sweep(draft);
+function compute() {
+  shoot(false);
+  sweep(false);
 }
 
-const shoot = newest(["shot"], async (draft) => {
+const shoot = newest(["shot"], async (draft, of = { text: state.text }) => {
   working(1);
   try {
-    const shot = await ask("shot", { verb: "shot", text: state.text, samples: draft ? SAMPLES.draft : SAMPLES.full, draft: Boolean(draft) });
-    takeShot(shot);
+    const shot = await ask("shot", { verb: "shot", ...of, samples: draft ? SAMPLES.draft : SAMPLES.full, draft });
+    takeShot(shot, draft);
     if (!draft) announceShot();
   } catch (error) {
     if (error.mistakes?.length) form.mark(error.mistakes);
@@ -148,7 +156,7 @@ const shoot = newest(["shot"], async (draft) => {
   }
 });
 
-function takeShot(shot) {
+function takeShot(shot, draft) {
   const { motion } = shot;
   if (motion) {
     motion.sensor = decoded(motion.sensor_n);
@@ -167,12 +175,12 @@ function takeShot(shot) {
   if (state.fresh) {
     state.fresh = false;
     // A first look: the pulse half-way to the wall.
-    state.time = state.linked ?? (shot.incident && shot.wall ? 0.5 * (shot.incident.time_s + shot.wall.time_s) : 0.6 * highest(motion));
+    state.time = state.linked?.time ?? (shot.incident && shot.wall ? 0.5 * (shot.incident.time_s + shot.wall.time_s) : 0.6 * highest(motion));
+    setMagnify(Number(state.linked?.magnify));
     state.linked = null;
-    setMagnify();
   }
   state.time = Math.min(state.time, shot.duration_s);
-  drawShot();
+  drawShot(draft);
 }
 
 /** When the sensor bead's signal is largest, in s. */
@@ -181,15 +189,27 @@ function highest(motion) {
   return motion.sensor.indexOf(Math.max(...motion.sensor)) * motion.interval_s;
 }
 
-function drawShot() {
+let later = 0;
+
+/** Draws numbers, row and signals; the rest once these are on the screen. */
+function drawShot(draft) {
+  // The row first, which asks for its size before anything else has changed.
+  showTime();
   drawTiles();
   plots.drawSignals(state);
+  cancelAnimationFrame(later);
+  later = requestAnimationFrame(() => setTimeout(drawRest, 0, draft));
+}
+
+function drawRest(draft) {
   plots.drawSpacetime(state);
-  plots.drawEnergy(state);
-  plots.drawCurve(state);
+  if (!draft) {
+    // A draft has no energy, and its curve follows.
+    plots.drawEnergy(state);
+    plots.drawCurve(state);
+  }
   drawTables();
-  showTime();
-  tell();
+  story.tell();
 }
 
 const sweep = newest(["curve", "reference"], async (draft) => {
@@ -204,7 +224,7 @@ const sweep = newest(["curve", "reference"], async (draft) => {
   const speed = outline.speed_m_s;
   const [from, to] = outline.dimensionless || speed < RANGE[0] || speed > RANGE[1] ? [speed / 5, speed * 5] : RANGE;
   const speeds = { from_m_s: from, to_m_s: to, count: draft ? CURVE.draft : CURVE.full };
-  $("#curve").classList.add("stale");
+  $("#curve").classList.toggle("stale", !draft);
   try {
     const curve = await ask("curve", { verb: "batch", text, speeds });
     Object.assign(state, { curve, speeds });
@@ -222,7 +242,7 @@ const sweep = newest(["curve", "reference"], async (draft) => {
   }
   plots.drawCurve(state);
   drawTables();
-  tell();
+  story.tell();
 });
 
 /** The reference's curve at the same speeds. */
@@ -290,8 +310,8 @@ function drawTiles() {
 }
 
 function table(caption, titles, rows) {
-  const head = html("tr", {}, titles.map((title) => html("th", { scope: "col", class: "n" }, title)));
-  const body = rows.map((row) => html("tr", {}, row.map((cell) => html("td", { class: "n" }, cell))));
+  const head = html("tr", {}, titles.map((title, at) => html("th", { scope: "col", class: at ? "n" : null }, title)));
+  const body = rows.map((row) => html("tr", {}, row.map((cell, at) => html("td", { class: at ? "n" : null }, cell))));
   return html("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": caption }, html("table", {}, [html("caption", {}, caption), html("thead", {}, head), html("tbody", {}, body)]));
 }
 
@@ -315,12 +335,12 @@ function drawTables() {
 
 // ---- Time.
 
-function setMagnify() {
+function setMagnify(asked) {
   const usual = state.motion?.usual() ?? 1;
   const options = [...new Set([1, 10, 50, 100, 200, 500, 1000, 2000, usual])].sort((a, b) => a - b);
   const select = $("#magnify");
   select.replaceChildren(...options.map((value) => html("option", { value }, value === usual ? `${value} (auto)` : String(value))));
-  select.value = usual;
+  select.value = options.includes(asked) ? asked : usual;
 }
 
 function setTime(time) {
@@ -330,7 +350,7 @@ function setTime(time) {
 }
 
 /** Draws the row at the present time. */
-const show = (canvas, size) => drawRow(canvas, state.motion, state.time, Number($("#magnify").value) || 1, { most: units(state).q(state.motion.most, "N", 3) }, size);
+const show = (canvas, size) => drawRow(canvas, state.motion, state.time, Number($("#magnify").value) || 1, units(state).q(state.motion.most, "N", 3), size);
 
 function showTime() {
   const { motion, shot } = state;
@@ -402,71 +422,17 @@ function toast(text) {
 
 // ---- Guided scenes.
 
-async function begin(id) {
-  scene = SCENES.find((one) => one.id === id) ?? null;
-  step = 0;
-  if (scene) await go(0);
-  else endScene();
-}
-
-async function go(at) {
-  // A step's row follows from all steps before it, so that any can be opened by itself.
-  step = at;
-  const upTo = scene.steps.slice(0, at + 1);
-  const from = upTo.findLastIndex((one) => one.preset);
-  const base = state.presets.find((one) => one.name === upTo[from].preset);
-  const edits = upTo.slice(from).flatMap((one) => one.edits ?? []);
-  const view = Object.assign({ curveView: "tof", whole: false, reference: null, play: false }, ...upTo.slice(from).map((one) => one.view ?? {}));
+/** Shows a row after edits as a step of a scene looks at it. */
+async function showStep(preset, edits, view) {
   for (const key of ["curveScale", "curveView", "whole"]) if (view[key] !== undefined) setView(key, view[key]);
-  const preset = state.presets.find((one) => one.name === view.reference);
-  state.reference = preset ? { name: preset.name, text: preset.text } : null;
+  const reference = state.presets.find((one) => one.name === view.reference);
+  state.reference = reference ? { name: reference.name, text: reference.text } : null;
   showReference();
   play(false);
   form.forget();
   state.fresh = true;
-  queued = { text: base.text, edits, draft: false };
+  queued = { text: state.presets.find((one) => one.name === preset).text, edits, draft: false };
   await check();
-  tell();
-  if (scene.steps[at].view?.play && !still.matches) {
-    setTime(0);
-    play(true);
-  }
-}
-
-function endScene() {
-  scene = null;
-  $("#scene").value = "";
-  $("#story").hidden = true;
-}
-
-/** Shows the scene's words, with the numbers of the moment. */
-function tell() {
-  const place = $("#story");
-  place.hidden = !scene;
-  if (!scene) return;
-  const last = step === scene.steps.length - 1;
-  const words = scene.steps[step].text;
-  const text = typeof words === "function" ? words(state) : words;
-  const key = JSON.stringify([scene.id, step, text]);
-  if (place.dataset.key === key) return;
-  const opened = place.dataset.answer === scene.id + step;
-  const focused = place.contains(document.activeElement) ? document.activeElement.dataset.go : null;
-  place.dataset.key = key;
-  const button = (name, act, of, primary) => html("button", { type: "button", "data-go": of, class: primary ? "primary" : undefined, onclick: act }, name);
-  const answer = html("p", { class: "answer", hidden: !opened }, formula(scene.answer));
-  const asking = last ? [html("p", { class: "question" }, scene.question), answer] : [];
-  const show = () => {
-    answer.hidden = false;
-    place.dataset.answer = scene.id + step;
-  };
-  place.replaceChildren(html("h2", {}, scene.title), html("p", {}, formula(text)), ...asking, html("div", { class: "steps" }, [
-    button("Back", () => go(step - 1), "back"),
-    last ? button("Show an answer", show, "next", true) : button("Next", () => go(step + 1), "next", true),
-    html("span", {}, `${step + 1} of ${scene.steps.length}`),
-    button("End the scene", endScene, "end"),
-  ]));
-  place.querySelector("[data-go=back]").disabled = step === 0;
-  if (focused) (place.querySelector(`[data-go=${focused}]:not(:disabled)`) ?? place.querySelector("[data-go=next]")).focus();
 }
 
 // ---- Files, links.
@@ -515,8 +481,9 @@ async function copied(what) {
     await copy(what === "shell" ? shell(state) : python(state));
     return toast(what === "shell" ? "The command lines are on the clipboard" : "The Python lines are on the clipboard");
   }
-  const { text, whole, curveScale, curveView, time } = state;
-  const fragment = await packed({ text, whole, curveScale, curveView, time, reference: state.reference?.name });
+  const { text, whole, curveScale, curveView, time, pinned, data } = state;
+  const table = data?.points?.length ? { name: data.name, table: data.table } : undefined;
+  const fragment = await packed({ text, whole, curveScale, curveView, time, magnify: $("#magnify").value, reference: state.reference?.name, pinned: pinned?.text, data: table });
   history.replaceState(null, "", fragment);
   await copy(location.href);
   return toast("The link is on the clipboard; for another machine, put its part from # behind the address of the explorer there");
@@ -567,7 +534,7 @@ function theme(name) {
 
 function bind() {
   $("#preset").addEventListener("change", (event) => load(state.presets.find((one) => one.name === event.target.value).text));
-  $("#scene").addEventListener("change", (event) => begin(event.target.value));
+  $("#scene").addEventListener("change", (event) => story.begin(event.target.value));
   $("#open").addEventListener("click", () => $("#file").click());
   $("#file").addEventListener("change", (event) => take([...event.target.files]).then(() => (event.target.value = "")));
   $("#jump").addEventListener("click", () => {
@@ -715,6 +682,16 @@ async function main() {
       plots.drawCurve(state);
     },
   });
+  story = new Story($("#story"), {
+    state,
+    show: showStep,
+    ended: () => ($("#scene").value = ""),
+    playFromStart: () => {
+      if (still.matches) return;
+      setTime(0);
+      play(true);
+    },
+  });
   state.setSpeed = (speed) => change([{ path: ["striker", "speed"], value: state.outline?.dimensionless ? Number(speed.toPrecision(3)) : `${Number(speed.toPrecision(3))} m/s` }]);
   bind();
   setPaces();
@@ -728,10 +705,12 @@ async function main() {
     showReference();
     if (link) {
       for (const key of ["whole", "curveScale", "curveView"]) if (link[key] !== undefined) setView(key, link[key]);
+      if (typeof link.pinned === "string") state.pinned = { name: "pinned", text: link.pinned };
       await setReference(link.reference ?? "");
     }
-    if (link && Number.isFinite(link.time)) state.linked = link.time;
+    if (link) state.linked = { time: Number.isFinite(link.time) ? link.time : null, magnify: link.magnify };
     await load(link?.text ?? began.experiment ?? presets[0].text);
+    if (typeof link?.data?.table === "string") await fit.takeText(String(link.data.name), link.data.table);
   } catch (error) {
     refuse(error);
   }

@@ -38,8 +38,24 @@ export function formula(text) {
   return [...parts, text.slice(from)];
 }
 
-/** A colour of the page's theme. */
-export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+const colours = new Map();
+
+/** A colour of the page's theme; asked for once, as each asking has the browser settle all styles. */
+export function colour(name) {
+  const key = `${name} ${document.documentElement.dataset.theme}`;
+  if (!colours.has(key)) colours.set(key, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return colours.get(key);
+}
+
+const ruler = document.createElement("canvas").getContext("2d");
+let family = null;
+
+/** The width of a text in the page's font, in pixels. */
+export function measured(text, size = 12) {
+  family ??= getComputedStyle(document.body).fontFamily;
+  ruler.font = `${size}px ${family}`;
+  return ruler.measureText(text).width;
+}
 
 function axis(from, to, log) {
   if (log) {
@@ -88,7 +104,7 @@ const BOTTOM = 36;
 export class Chart {
   constructor(place, name) {
     this.place = place;
-    this.root = svg("svg", { role: "img", tabindex: "0", "aria-label": name });
+    this.root = svg("svg", { role: "img", tabindex: "0", "aria-label": `${name}; arrow keys read its values` });
     this.tip = html("div", { class: "tip", hidden: true });
     place.replaceChildren(this.root, this.tip);
     this.name = name;
@@ -98,14 +114,16 @@ export class Chart {
     this.root.addEventListener("pointerdown", (event) => this.choose(event));
     this.root.addEventListener("keydown", (event) => this.key(event));
     this.root.addEventListener("blur", () => this.leave());
-    new ResizeObserver(() => this.spec && this.draw(this.spec)).observe(place);
+    new ResizeObserver(() => {
+      this.size = null;
+      if (this.spec) this.draw(this.spec);
+    }).observe(place);
   }
 
   draw(spec) {
     this.spec = spec;
-    const width = Math.max(180, this.place.clientWidth);
-    const height = Math.max(120, this.place.clientHeight);
-    this.size = { width, height, inner: width - LEFT - RIGHT, tall: height - TOP - BOTTOM };
+    this.size ??= this.measure();
+    const { width, height } = this.size;
     const drawn = spec.series.filter((one) => one.x.length);
     if (!drawn.length) return this.empty();
     const range = (of, key, share) => {
@@ -125,6 +143,13 @@ export class Chart {
     this.root.replaceChildren(svg("defs", {}, bounds), this.axes(spec), inside, this.cursorLine, this.hoverLine, this.marks, this.legend(drawn));
     for (const mark of spec.marks ?? []) this.mark(mark);
     this.cursor(spec.cursor);
+  }
+
+  /** The place's size, which is read only when it has changed: reading it has the browser lay out the page. */
+  measure() {
+    const width = Math.max(180, this.place.clientWidth);
+    const height = Math.max(120, this.place.clientHeight);
+    return { width, height, inner: width - LEFT - RIGHT, tall: height - TOP - BOTTOM };
   }
 
   /** Nothing to draw: no axes either, which would promise something. */
@@ -217,14 +242,13 @@ export class Chart {
     const shown = drawn.filter((one) => !one.quiet);
     const narrow = this.size.width < 430;
     for (const one of shown.reverse()) {
-      const text = svg("text", { y: 12, "text-anchor": "end", x }, narrow ? one.brief ?? one.name : one.name);
-      group.append(text);
-      const width = (narrow ? one.brief ?? one.name : one.name).length * 6.5;
-      const start = x - width - 20;
+      const name = narrow ? one.brief ?? one.name : one.name;
+      group.append(svg("text", { y: 12, "text-anchor": "end", x }, name));
+      const start = x - measured(name) - 21;
       if (one.points) group.append(one.square ? svg("rect", { x: start + 4, y: 4.5, width: 7, height: 7, fill: one.hollow ? "none" : one.colour, stroke: one.colour }) : svg("circle", { cx: start + 8, cy: 8, r: 3.5, fill: one.hollow ? "none" : one.colour, stroke: one.colour }));
       else if (one.base) group.append(svg("rect", { x: start + 3, y: 3, width: 11, height: 10, rx: 2, fill: one.colour, "fill-opacity": one.opacity ?? 0.85 }));
       else group.append(svg("line", { x1: start, x2: start + 15, y1: 8, y2: 8, stroke: one.colour, "stroke-width": 2.5, "stroke-dasharray": one.dash }));
-      x = start - 10;
+      x = start - 12;
     }
     return group;
   }

@@ -1,6 +1,6 @@
 // What leaves the page: files, figures, command lines, links.
 
-import { colour, svg } from "./charts.js";
+import { colour, measured, svg } from "./charts.js";
 
 /** Saves a text or a blob under a name. */
 export function save(name, content, kind) {
@@ -43,10 +43,10 @@ function keys(series, right, y) {
   const group = svg("g");
   let x = right;
   for (const one of series) {
-    const width = one.name.length * 6.2;
+    const width = measured(one.name, 10);
     group.append(svg("text", { x, y, "text-anchor": "end", "font-size": 10, "font-family": "system-ui, sans-serif", fill: colour("soft") }, one.name));
-    group.append(svg("rect", { x: x - width - 12, y: y - 8, width: 8, height: 8, rx: 2, fill: one.colour }));
-    x -= width + 22;
+    group.append(svg("rect", { x: x - width - 13, y: y - 8, width: 8, height: 8, rx: 2, fill: one.colour }));
+    x -= width + 25;
   }
   return group;
 }

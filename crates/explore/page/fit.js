@@ -2,7 +2,7 @@
 
 import { ask, cancel, encoded, progress } from "./engine.js";
 import { Chart, colour, html } from "./charts.js";
-import { plain, split, typed, withError } from "./numbers.js";
+import { plain, quantity, split, titled, typed, withError } from "./numbers.js";
 
 /** Largest file that the page takes, in bytes. */
 const LARGEST = 64 * 1024 * 1024;
@@ -38,7 +38,7 @@ export class Fit {
       html("h3", {}, "Data"),
       html("p", { class: "hint" }, "Drop a recording (CSV of an oscilloscope, HDF5, TDMS, NPY, WAV) or a table of times of flight on the page, or open one. Without data, take some from this row’s own curve."),
       html("div", { class: "row" }, [html("button", { type: "button", onclick: () => this.page.pickFile() }, "Open a file…"), html("button", { type: "button", onclick: () => this.synthetic() }, "Noisy data of this row"), this.remove]),
-      html("details", {}, [html("summary", {}, "What a recording leaves open"), option("rate", "Sampling rate", "500 kHz"), option("channel", "Channels, by name or number", "1, 2"), option("speed", "Speed of the shot", "0.5 m/s")]),
+      html("details", {}, [html("summary", {}, "Rate, channels, speed of a recording"), option("rate", "Sampling rate", "500 kHz"), option("channel", "Channels, by name or number", "1, 2"), option("speed", "Speed of the shot", "0.5 m/s")]),
       this.about,
       html("h3", {}, "Free numbers"),
       html("p", { class: "hint" }, "What is ticked is fitted to the data; all else stays as the experiment has it."),
@@ -52,6 +52,7 @@ export class Fit {
   /** Lists what can be free in an experiment. */
   show(tree) {
     const found = tree ? candidates(tree) : [];
+    this.candidates = found;
     for (const name of this.ticked) if (!found.some((one) => one.name === name)) this.ticked.delete(name);
     if (!this.ticked.size && found.length) {
       const usual = found.find((one) => /damping_cubic/.test(one.name)) ?? found.find((one) => /young/.test(one.name)) ?? found[0];
@@ -73,8 +74,7 @@ export class Fit {
       const rows = curve.speed_m_s.map((speed, at) => [speed, 1e-4, curve.tof_incident_s[at], curve.tof_reflected_s[at]]).filter((row) => row[2] && row[3]).map(([speed, error, there, back]) => [speed, error, there * (1 + 5e-4 * normal()), 5e-4 * there, back * (1 + 5e-4 * normal()), 5e-4 * back, 0]);
       if (!rows.length) return this.say("This row has no times of flight: its chain has no wall.");
       const table = `speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error,tof_reflected_s,tof_reflected_s_error,tof_correlation\n${rows.map((row) => row.join(",")).join("\n")}\n`;
-      const bytes = new TextEncoder().encode(table);
-      await this.take({ name: "noisy data of this row.csv", arrayBuffer: async () => bytes.buffer, size: bytes.length });
+      await this.takeText("noisy data of this row.csv", table);
     } catch (error) {
       this.say(error.message);
     }
@@ -85,6 +85,11 @@ export class Fit {
     if (file.size > LARGEST) return this.say(`${file.name} has ${plain(file.size / 1e6, 3)} MB: the page takes up to 64 MB; hertzchain measure takes any size.`);
     this.file = { name: file.name, bytes: encoded(await file.arrayBuffer()) };
     return this.measure();
+  }
+
+  /** Takes a table of times of flight as a text. */
+  takeText(name, table) {
+    return this.take(new File([table], name));
   }
 
   async measure() {
@@ -108,8 +113,8 @@ export class Fit {
 
   recorded(data) {
     const { shots } = data.measured;
-    const seen = shots.find((shot) => shot.passing);
-    if (seen) data.picks = { passing: seen.passing, wall: seen.wall, returning: seen.returning };
+    const seen = shots.find((shot) => shot.incident);
+    if (seen) data.picks = { incident: seen.incident, wall: seen.wall, reflected: seen.reflected };
     const speed = split(typed(this.options.speed));
     if (seen && speed && !data.points?.length) {
       const value = speed.value * ({ "mm/s": 1e-3, "cm/s": 1e-2 }[speed.unit] ?? 1);
@@ -137,6 +142,7 @@ export class Fit {
     this.about.replaceChildren(
       html("table", { class: "result" }, [html("thead", {}, head), html("tbody", {}, lines)]),
       ...[...new Set(notes)].filter(Boolean).slice(0, 6).map((note) => html("p", { class: "hint" }, String(note))),
+      ...(measured.shots.length && !data.points?.length ? [html("p", { class: "hint" }, "A fit needs the speed of the shot: type it above under “Speed of the shot”, or open a table of times against speed.")] : []),
       ...(measured.shots.length ? [] : [html("p", { class: "error" }, "No shot was found in it.")]),
     );
   }
@@ -190,26 +196,33 @@ export class Fit {
     cancel("fit");
   }
 
+  /** What a parameter is called where it is ticked; a prefactor or an exponent comes after it. */
+  label(name) {
+    const of = this.candidates.find((one) => name === one.name || name.startsWith(`${one.name}.`));
+    return of ? `${of.label}${name.slice(of.name.length).replace(".", ", ")}` : name.replaceAll("_", " ");
+  }
+
   present(found) {
     const { parameters, correlation, chi_square: chi } = found;
-    const rows = parameters.map((one) => html("tr", {}, [
-      html("th", { scope: "row" }, one.name.replaceAll("_", " ")),
-      html("td", {}, one.determined ? withError(one.value, one.standard_error, one.unit === "1" ? "" : one.unit) : `${plain(one.value, 4)} ${one.unit}, not determined`),
+    const label = (at) => `${at + 1} ${this.label(parameters[at].name)}`;
+    const rows = parameters.map((one, at) => html("tr", {}, [
+      html("th", { scope: "row" }, label(at)),
+      html("td", {}, one.determined ? withError(one.value, one.standard_error, one.unit === "1" ? "" : one.unit) : `${quantity(one.value, one.unit === "1" ? "" : one.unit)}, not determined`),
     ]));
     const head = (names) => html("thead", {}, html("tr", {}, names.map((name) => html("th", { scope: "col" }, name))));
-    const parts = [html("h3", {}, "Result"), html("table", { class: "result" }, [head(["Number", "Value ± standard error"]), html("tbody", {}, rows)])];
+    const parts = [html("h3", {}, "Result"), html("table", { class: "result" }, [head(["Number", "Value ± error"]), html("tbody", {}, rows)])];
     if (chi) parts.push(html("p", { class: "hint" }, `χ² = ${plain(chi.value, 4)} at ${chi.freedom} degrees of freedom, p = ${plain(chi.probability, 3)}: the model ${found.follows_data ? "follows" : "does not follow"} the data.`));
     for (const one of found.not_determined ?? []) parts.push(html("p", { class: "error" }, `Not determined: ${one.words}`));
     for (const words of found.would_separate ?? []) parts.push(html("p", { class: "hint" }, words));
     if (parameters.length > 1) {
-      const body = correlation.map((row, at) => html("tr", {}, [html("th", { scope: "row" }, String(at + 1)), ...row.map((value) => html("td", { class: "n" }, value === null ? "–" : plain(value, 3)))]));
+      const body = correlation.map((row, at) => html("tr", {}, [html("th", { scope: "row" }, label(at)), ...row.map((value) => html("td", { class: "n" }, value === null ? "–" : plain(value, 3)))]));
       parts.push(html("h3", {}, "Correlation"), html("table", { class: "result" }, [head(["Number", ...parameters.map((_, at) => String(at + 1))]), html("tbody", {}, body)]));
     }
     const plot = html("div", { class: "plot" });
-    parts.push(html("h3", {}, "Residuals"), plot, html("div", { class: "row" }, html("button", { type: "button", onclick: () => this.adopt(found) }, "Take these values over into the experiment")));
+    parts.push(html("h3", {}, "Residuals"), plot, html("div", { class: "row" }, html("button", { type: "button", onclick: () => this.adopt(found) }, "Use these values in the experiment")));
     this.result.replaceChildren(...parts);
     this.residuals(plot, found.residuals);
-    this.page.announce(`The fit has ended: ${parameters.map((one) => `${one.name} ${withError(one.value, one.standard_error ?? 0, one.unit)}`).join(", ")}`);
+    this.page.announce(`The fit has ended: ${parameters.map((one) => `${this.label(one.name)} ${withError(one.value, one.standard_error ?? 0, one.unit)}`).join(", ")}`);
   }
 
   residuals(plot, residuals) {
@@ -221,7 +234,7 @@ export class Fit {
     });
     const all = residuals.map((row) => row.speed_m_s);
     series.unshift({ name: "0", quiet: true, x: [Math.min(...all), Math.max(...all)], y: [0, 0], colour: colour("soft"), width: 1, dash: "4 4" });
-    chart.draw({ x: { label: "speed in m/s", log: true }, y: { label: "measured − model, in σ" }, series });
+    chart.draw({ x: { label: "speed in m/s", log: true }, y: { label: "residual in σ" }, series });
   }
 
   /** Puts the fitted values where the experiment has these numbers. */
@@ -263,7 +276,7 @@ function candidates(tree) {
   const shown = (value) => (typeof value === "object" ? `${value.prefactor} · v^${value.exponent}` : String(value));
   for (const [material, of] of Object.entries(tree.materials ?? {})) {
     for (const key of ["young_modulus", "poisson_ratio", "shear_viscosity"]) {
-      if (of[key] !== undefined) found.push({ name: `materials.${material}.${key}`, label: `${key.replaceAll("_", " ")} of ${material}`, value: shown(of[key]) });
+      if (of[key] !== undefined) found.push({ name: `materials.${material}.${key}`, label: `${titled(key)} of ${material}`, value: shown(of[key]) });
     }
   }
   (tree.contacts ?? []).forEach((section, at) => {
@@ -271,12 +284,12 @@ function candidates(tree) {
       if (typeof law !== "object") continue;
       for (const [key, value] of Object.entries(law)) {
         if (key === "law" || key === "contact" || !split(value)) continue;
-        found.push({ name: `contacts[${at}].laws.${law.law}.${key}`, label: `${key.replaceAll("_", " ")} of ${law.law.replaceAll("_", " ")}${tree.contacts.length > 1 ? `, section ${at + 1}` : ""}`, value: shown(value) });
+        found.push({ name: `contacts[${at}].laws.${law.law}.${key}`, label: `${titled(key)} of ${law.law.replaceAll("_", " ")}${tree.contacts.length > 1 ? `, section ${at + 1}` : ""}`, value: shown(value) });
       }
     }
   });
   for (const [path, value] of [["track.incline", tree.track?.incline], ["near_end.force", tree.near_end?.force]]) {
-    if (value !== undefined) found.push({ name: path, label: path.replace(".", ": "), value: String(value) });
+    if (value !== undefined) found.push({ name: path, label: titled(path.replace(".", ": ")), value: String(value) });
   }
   return found;
 }

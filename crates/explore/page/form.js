@@ -1,7 +1,7 @@
 // Controls for everything that an experiment file knows, made from its JSON Schema.
 
 import { formula, html } from "./charts.js";
-import { brief, split, typed } from "./numbers.js";
+import { brief, split, titled, typed } from "./numbers.js";
 
 /** Tables in the order in which a row is thought of; what is not named here comes after. */
 const ORDER = ["striker", "beads", "contacts", "materials", "near_end", "far_end", "gaps", "track", "suspension", "driven", "initial", "sensors", "reading", "solver", "tension", "liquid", "units", "title", "rig", "campaign"];
@@ -13,7 +13,7 @@ const OPEN = new Set(["striker", "beads", "contacts", "materials", "near_end", "
 /** What a new value starts with, where the schema's example would be out of scale. */
 const SUGGESTED = {
   gap: "10 um", incline: "0.5 deg", length: "150 mm", duration: "3 ms", displacement: "1 um", velocity: "0.1 m/s", amplitude: "1 um",
-  frequency: "5 kHz", radius: "6.35 mm", mass: "8.54 g", density: "7960 kg/m^3", radius_ratio: 0.95, accuracy: "1e-8", step: "0.2 us", repeat: 10,
+  frequency: "5 kHz", radius: "6.35 mm", mass: "8.54 g", density: "7960 kg/m^3", radius_ratio: 0.95, accuracy: "1e-8", step: "0.2 us", repeat: 10, from: 0,
 };
 const SUGGESTED_LAWS = {
   elastic_power: { stiffness: "2.5e12 N/m^2", exponent: 2 }, elastic_plastic_thornton: { yield_pressure: "1.6 GPa" },
@@ -23,9 +23,11 @@ const SUGGESTED_LAWS = {
   damping_viscoelastic: { relaxation_time: "0.34 us" }, damping_brilliantov_1996: { relaxation_time: "0.34 us" },
 };
 
-const titled = (key) => key.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
 const keyOf = (path) => JSON.stringify(path);
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+
+/** Keys that have no place beside another one. */
+const WITHOUT = { cell: ["count", "mass", "material", "radius", "radius_ratio"], striker: ["driven"], driven: ["striker"] };
 
 /** A mistake as one sentence. */
 export const sentence = (mistake) => `${mistake.message}: ${mistake.expected}${mistake.help ? ` (${mistake.help})` : ""}`;
@@ -98,7 +100,9 @@ export class Form {
     const value = this.tree[key];
     const open = this.opened.get(key) ?? OPEN.has(key);
     const summary = html("summary", {}, [titled(key), html("small", { title: schema.description ?? "" }, schema.description ?? "")]);
-    return html("details", { class: "group", "data-group": key, open }, [summary, ...this.controls([key], schema, value, SLIDERS.has(key))]);
+    const whole = ["table", "members", "variant"].includes(kind(schema, value)) && !["beads", "contacts", "materials"].includes(key);
+    const remove = whole ? html("button", { type: "button", class: "plain", onclick: () => this.edit([key], undefined) }, `Remove ${titled(key).toLowerCase()}`) : null;
+    return html("details", { class: "group", "data-group": key, open, "aria-label": titled(key) }, [summary, ...this.controls([key], schema, value, SLIDERS.has(key)), remove].filter(Boolean));
   }
 
   /** Controls of a value, by the kind of its place. */
@@ -145,7 +149,7 @@ export class Form {
 
   member(path, title, children, removable = true) {
     const remove = removable && this.remover(path, title);
-    return html("section", { class: "member" }, [html("header", {}, [html("span", {}, title), remove || null]), ...children]);
+    return html("section", { class: "member", role: "group", "aria-label": title }, [html("header", {}, [html("span", {}, title), remove || null]), ...children]);
   }
 
   remover(path, title) {
@@ -174,10 +178,11 @@ export class Form {
       const fields = (law?.parameters ?? []).filter((one) => given[one.name] !== undefined).map((one) =>
         this.field([...here, one.name], { pattern: "1", type: one.unit === "1" ? ["string", "number"] : "string", description: one.meaning }, true, !one.required));
       const absent = (law?.parameters ?? []).filter((one) => given[one.name] === undefined);
-      const add = absent.length ? this.select("Set…", absent.map((one) => [one.name, `${one.name.replaceAll("_", " ")}: ${one.meaning}`]), (key) => this.edit(here, { law: name, ...given, [key]: SUGGESTED_LAWS[name]?.[key] ?? "1" })) : null;
-      return html("section", { class: "law" }, [header, html("p", { class: "equation" }, formula(law?.equation ?? "")), ...fields, add, html("p", { class: "source" }, source(law))]);
+      const add = absent.length ? this.select("Set…", absent.map((one) => [one.name, `${one.name.replaceAll("_", " ")}: ${one.meaning}`]), (key) => this.edit(here, { law: name, ...given, [key]: this.suggested(name, key) })) : null;
+      return html("section", { class: "law", role: "group", "aria-label": name.replaceAll("_", " ") }, [header, html("p", { class: "equation" }, formula(law?.equation ?? "")), ...fields, add, html("p", { class: "source" }, source(law))]);
     });
-    parts.push(this.select("Add a law…", this.laws.map((law) => [law.name, `${law.name.replaceAll("_", " ")} (${law.nature})`]), (name) => this.edit([...path, value.length], this.law(name))));
+    const present = new Set(value.map((entry) => entry.law ?? entry));
+    parts.push(this.select("Add a law…", this.laws.filter((law) => !present.has(law.name)).map((law) => [law.name, `${law.name.replaceAll("_", " ")} (${law.nature})`]), (name) => this.edit([...path, value.length], this.law(name))));
     return parts;
   }
 
@@ -185,19 +190,27 @@ export class Form {
     const law = this.laws.find((one) => one.name === name);
     const required = (law?.parameters ?? []).filter((one) => one.required);
     if (!required.length) return name;
-    return { law: name, ...Object.fromEntries(required.map((one) => [one.name, SUGGESTED_LAWS[name]?.[one.name] ?? "1"])) };
+    return { law: name, ...Object.fromEntries(required.map((one) => [one.name, this.suggested(name, one.name)])) };
   }
 
-  select(title, options, choose) {
-    const list = html("select", { "aria-label": title, onchange: (event) => event.target.value && choose(event.target.value) }, [html("option", { value: "" }, title), ...options.map(([value, text]) => html("option", { value }, text))]);
+  /** A first value for a law's parameter. */
+  suggested(name, parameter) {
+    const { unit } = this.laws.find((law) => law.name === name).parameters.find((one) => one.name === parameter);
+    return SUGGESTED_LAWS[name]?.[parameter] ?? (parameter === "stiffness" ? SUGGESTED_LAWS.elastic_hertz.stiffness : unit === "1" ? 1 : `1 ${unit}`);
+  }
+
+  select(title, options, choose, name = title) {
+    const list = html("select", { "aria-label": name, onchange: (event) => event.target.value && choose(event.target.value) }, [html("option", { value: "" }, title), ...options.map(([value, text]) => html("option", { value }, text))]);
     return html("div", { class: "add" }, list);
   }
 
   adder(path, schema, value, title, without) {
-    const absent = Object.entries(schema.properties).filter(([key, of]) => value[key] === undefined && key !== without && of.const === undefined);
+    const barred = new Set([without, ...Object.keys(value).flatMap((key) => WITHOUT[key] ?? []), ...(value.cell ? [] : ["repeat"])]);
+    const absent = Object.entries(schema.properties).filter(([key, of]) => value[key] === undefined && !barred.has(key) && of.const === undefined);
     if (!absent.length) return null;
-    const add = (key) => this.edit([...path, key], this.fresh(schema.properties[key], key));
-    return this.select(title, absent.map(([key, of]) => [key, `${key.replaceAll("_", " ")}: ${(of.description ?? "").split(/; default|, in |, from /)[0]}`.slice(0, 90)]), add);
+    const add = (key) => (key === "cell" ? this.edit(path, dimer(value)) : this.edit([...path, key], this.fresh(schema.properties[key], key)));
+    const where = path.map((step) => (Number.isInteger(step) ? step + 1 : titled(step))).join(" ");
+    return this.select(title, absent.map(([key, of]) => [key, `${key.replaceAll("_", " ")}: ${(of.description ?? "").split(/; default|, in |, from /)[0]}`.slice(0, 90)]), add, where ? `Add to ${where}` : title);
   }
 
   /** Adds an entry with a name of the user's choice: a material. */
@@ -221,11 +234,11 @@ export class Form {
     }
     if (types.includes("array")) {
       if (key === "laws") return ["elastic_hertz"];
-      return schema.items?.type === "integer" ? [schema.items.minimum ?? 1] : [{ ...this.fresh(schema.items), ...(key === "gaps" ? { contact: 10, gap: SUGGESTED.gap } : {}), ...(key === "initial" ? { bead: 1, velocity: SUGGESTED.velocity } : {}) }];
+      return schema.items?.type === "integer" ? [Math.max(1, schema.items.minimum ?? 1)] : [{ ...this.fresh(schema.items), ...(key === "gaps" ? { contact: 10, gap: SUGGESTED.gap } : {}), ...(key === "initial" ? { bead: 1, velocity: SUGGESTED.velocity } : {}) }];
     }
     if (types.includes("boolean")) return true;
     if (types.includes("integer")) return Math.max(1, schema.minimum ?? 1);
-    if (/name of a material/.test(schema.description ?? "")) return Object.keys(this.tree.materials ?? { steel: 0 })[0];
+    if (key === "material") return Object.keys(this.tree.materials ?? { steel: 0 })[0];
     if (schema.examples) return schema.examples[0];
     if (/poisson/i.test(`${key}${schema.description}`)) return 0.3;
     return types.includes("number") ? 1 : "name";
@@ -355,6 +368,12 @@ export class Form {
       for (let parent = found.frame.closest("details"); parent; parent = parent.parentElement.closest("details")) parent.open = true;
     }
   }
+}
+
+/** A group of equal beads as one whose beads alternate, at first alike. */
+function dimer({ count, radius, mass, material }) {
+  const bead = { radius: radius ?? SUGGESTED.radius, ...(mass && { mass }), ...(material && { material }) };
+  return { cell: [bead, bead], repeat: Math.max(1, Math.round((count ?? 2) / 2)) };
 }
 
 /** What is typed as the file has it: numbers as numbers where the schema takes them. */

@@ -26,8 +26,8 @@ export function parts(value, unit, digits = 4) {
   if (unit === "kg") return parts(value * 1000, "g", digits);
   if (!/^(s|m|N|J|Pa|Hz|V|g|m\/s|N\/m|Pa s)$/.test(unit) || value === 0) return [plain(value, digits), unit];
   const size = Math.abs(value);
-  // Slow things are slow in m/s; kilometres a second are rare.
-  const scales = unit === "m/s" ? [[1, ""]] : PREFIXES;
+  // Of slow things alone millimetres a second are read more easily.
+  const scales = unit === "m/s" ? [size < 0.01 ? [1e-3, "m"] : [1, ""]] : PREFIXES;
   const [scale, prefix] = scales.find(([scale]) => size >= scale * 0.99995) ?? scales[scales.length - 1];
   return [plain(value / scale, digits), prefix + unit];
 }
@@ -45,8 +45,8 @@ export function withError(value, error, unit) {
   return `${(value / scale).toFixed(places)} ± ${(error / scale).toFixed(places)} ${prefix}${unit}`.replace("-", "−").trim();
 }
 
-/** What a unit of a table of numbers is called in the page. */
-export const time = (seconds, dimensionless) => (dimensionless ? plain(seconds, 5) : `${(seconds * 1e6).toFixed(1)} µs`);
+/** A key of the experiment file as a title. */
+export const titled = (key) => key.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
 
 /** A typed number or quantity: decimal comma and typographic minus become what the file has. */
 export function typed(text) {

@@ -257,10 +257,10 @@ function aligned(state) {
   const example = data?.examples?.[0];
   const picks = example && data.picks;
   if (!picks || !shot?.incident) return [];
-  const shift = shot.incident.time_s - picks.passing.time_s;
+  const shift = shot.incident.time_s - picks.incident.time_s;
   return example.channels.map((volts, channel) => {
     const own = channel === 1 ? "wall" : "incident";
-    const pick = channel === 1 ? picks.wall : picks.passing;
+    const pick = channel === 1 ? picks.wall : picks.incident;
     const sign = volts[Math.min(volts.length - 1, Math.max(0, Math.round(pick.time_s / example.interval_s)))] < 0 ? -1 : 1;
     const scale = (sign * shot[own].value_n) / Math.abs(pick.height_v);
     const time = [];

@@ -83,7 +83,7 @@ export class Motion {
 }
 
 /** Draws a motion's row at a time on a canvas, as the page shows it or at another size; returns the row's state. */
-export function drawRow(canvas, motion, time, magnify, words, size = {}) {
+export function drawRow(canvas, motion, time, magnify, most, size = {}) {
   const { width, height, ratio } = { width: canvas.clientWidth, height: canvas.clientHeight, ratio: window.devicePixelRatio || 1, ...size };
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
@@ -101,7 +101,9 @@ export function drawRow(canvas, motion, time, magnify, words, size = {}) {
   const [from, to] = [first.rest_m - first.radius_m, last.rest_m + (walled ? 0 : last.radius_m)];
   // Room for the struck row to move to the right, and for the striker to come back.
   const room = 26;
-  const scale = Math.min((width - 2 * room) / (to - from), (0.17 * height) / largest);
+  // Where the row is low, bars keep 30 px.
+  const tall = Math.max(8, Math.min(0.17 * height, (height - 112) / 2));
+  const scale = Math.min((width - 2 * room) / (to - from), tall / largest);
   const left = (width - (to - from) * scale) / 2;
   const middle = largest * scale + 34;
   const place = bodies.map((body, at) => left + (body.rest_m - from + state.moved[at] * magnify) * scale);
@@ -110,7 +112,8 @@ export function drawRow(canvas, motion, time, magnify, words, size = {}) {
     light: isDark() ? [196, 208, 219] : [246, 249, 251],
     edge: colour("steel-3"), ink: colour("ink"), soft: colour("soft"), ground: colour("ground"), accent: colour("accent"), incident: colour("incident"), wall: colour("wall"),
   };
-  const bars = { top: middle + largest * scale + 22, bottom: height - 12 };
+  const below = middle + largest * scale + 30;
+  const bars = { top: below + 6, bottom: height - 12 };
   drawGround(pen, theme, { left, right: left + (to - from) * scale, y: middle + largest * scale + 3, walled, width });
   if (walled) drawWall(pen, theme, { x: place[bodies.length - 1], middle, tall: largest * scale + 10, width });
   bodies.forEach((body, at) => {
@@ -123,7 +126,10 @@ export function drawRow(canvas, motion, time, magnify, words, size = {}) {
   pen.font = "12px system-ui, sans-serif";
   pen.textAlign = "left";
   pen.fillStyle = theme.soft;
-  pen.fillText(`contact forces, up to ${words.most}${state.open.some(Boolean) ? "; boxes: open contacts" : ""}${bodies.some((body) => body.wet) ? "; dots below: wet" : ""}`, Math.max(6, left), bars.top + 8);
+  const words = [`contact forces, up to ${most}`, ...(state.open.some(Boolean) ? ["boxes: open contacts"] : []), ...(bodies.some((body) => body.wet) ? ["dots below: wet"] : [])];
+  const wide = (text) => pen.measureText(text).width;
+  while (words.length > 1 && wide(words.join("; ")) > width - 12) words.pop();
+  pen.fillText(words.join("; "), Math.max(6, Math.min(left, width - 6 - wide(words.join("; ")))), below);
   drawLabels(pen, theme, { bodies, place, middle, scale, state, largest, width });
   return state;
 }

@@ -41,10 +41,10 @@ export const SCENES = [
         text: "Five balls on threads. If balls collided two by two, each would hand its whole speed to the next, and the last alone would fly off with the striker’s 0.5 m/s, while all others rest.",
       },
       {
-        text: (state) => `Contacts last, and several are closed at once, so the speeds at the end are ${ends(state)}: the first three balls move back, and the last is slower than the striker was. Herrmann and Seitz described this in 1982.`,
+        text: (state) => `Contacts last, and several are closed at once, so the speeds at the end are ${ends(state)}: three balls move back, the fourth follows the last one, and the last is slower than the striker was. Herrmann and Seitz described this in 1982.`,
       },
       {
-        edits: [set(["beads", 0, "count"], 9)],
+        edits: [set(["beads", 0, "count"], 9), set(["title"], "Newton's cradle with ten balls")],
         text: (state) => `With ten balls more of them take part in the break-up: ${ends(state)}. The energy is still all there; look at the budget.`,
       },
     ],
@@ -61,7 +61,7 @@ export const SCENES = [
         text: "One bead in the middle, bead 20, has half the radius and an eighth of the mass. The pulse arrives, and the light bead rattles between its neighbours: see the waves that leave it in the map of contact forces.",
       },
       {
-        edits: [set(["beads", 1, "radius"], "9 mm"), set(["beads", 1, "mass"], "24.3 g")],
+        edits: [set(["beads", 1, "radius"], "9 mm"), set(["beads", 1, "mass"], "24.3 g"), set(["title"], "One heavy bead in a uniform chain")],
         text: "A heavy intruder instead reflects a part of the pulse at once, and lets the rest through as several smaller pulses.",
       },
       {
@@ -105,12 +105,12 @@ export const SCENES = [
       {
         preset: "motor",
         view: { curveView: "ratio", curveScale: "log", reference: "dry" },
-        text: "The ratio of times, wet over dry: the oil changes them by a few per cent, and the sign depends on the speed. The curve is the paper’s model with an effective modulus and viscosity for this oil.",
+        text: "The ratio of times, wet over dry: the oil changes the incident time by a few per cent, with a sign that depends on the speed, and the reflected one by more. The curve is the paper’s model with an effective modulus and viscosity for this oil.",
       },
       {
         preset: "gear",
         view: { curveView: "ratio", curveScale: "log", reference: "dry" },
-        text: "Gear oil has the highest viscosity of the three, and its row is the fastest: the ratio stays below 1.",
+        text: "Gear oil has the highest viscosity of the three, and its incident pulse is the fastest: the ratio stays below 1. The reflected pulse is late all the same, but for the fastest shots.",
       },
       {
         preset: "pump",
@@ -119,7 +119,7 @@ export const SCENES = [
       },
     ],
     question: "Does a more viscous oil make the row slower?",
-    answer: "Not by itself. Gear oil is 2.5 times as viscous as pump oil and its row is faster: a film squeezed in microseconds stiffens the contact as well as it damps it.",
+    answer: "Not by itself. Gear oil is 2.4 times as viscous as pump oil, and the incident pulse is faster in it: a film squeezed in microseconds stiffens the contact as well as it damps it.",
   },
   {
     id: "gaps",
@@ -131,13 +131,13 @@ export const SCENES = [
         text: "A row that just touches, once more. Between bead 20 and 21 now comes a gap of 20 µm, a third of a hair.",
       },
       {
-        edits: [set(["gaps"], [{ contact: 20, gap: "20 um" }])],
+        edits: [set(["gaps"], [{ contact: 20, gap: "20 um" }]), set(["title"], "A gap of 20 µm behind bead 20")],
         view: { play: true },
         text: "Bead 20 must fly across the gap: the pulse is late, the later the slower the shot. The slope of the curve is no longer −1/5; dashed is the row without the gap.",
       },
       {
         preset: "hertz",
-        edits: [set(["near_end"], { push: "constant", force: "30 N" })],
+        edits: [set(["near_end"], { push: "constant", force: "30 N" }), set(["title"], "A preload of 30 N")],
         view: { curveScale: "log", curveView: "tof", reference: "hertz" },
         text: (state) => `A push of 30 N instead closes every contact, and there is sound: slow shots all take the same time. The slope falls to ${plain(state.curve?.power_law_incident?.exponent, 3)} over this range, and flattens to 0 at the slow end.`,
       },
@@ -158,7 +158,7 @@ export const SCENES = [
         text: (state) => `The largest force is ${quantity(peak(state, 0), "N", 3)} in the first contact and ${quantity(peak(state, -1), "N", 3)} in the last one. What hits hard at one end arrives as a faster, weaker and longer-drawn push.`,
       },
       {
-        edits: [set(["beads", 0, "radius_ratio"], 0.9)],
+        edits: [set(["beads", 0, "radius_ratio"], 0.9), set(["title"], "Tapered chain: each bead 10 % smaller than the one before")],
         text: (state) => `With 10 % a bead: ${quantity(peak(state, 0), "N", 3)} against ${quantity(peak(state, -1), "N", 3)}. The small beads at the end fly off fast, and carry little.`,
       },
     ],

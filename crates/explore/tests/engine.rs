@@ -134,6 +134,14 @@ fn an_edit_changes_its_value_and_keeps_comments() {
 }
 
 #[test]
+fn a_shot_of_edits_is_that_of_the_edited_text() {
+    let edits = json!([{ "path": ["striker", "speed"], "value": "0.8 m/s" }]);
+    let request = json!({ "verb": "shot", "text": text("dry"), "edits": edits, "draft": true });
+    let edited = text("dry").replace("speed = \"0.5 m/s\"", "speed = \"0.8 m/s\"");
+    assert_eq!(reply(request), reply(json!({ "verb": "shot", "text": edited, "draft": true })));
+}
+
+#[test]
 fn an_edit_without_a_place_is_refused() {
     let edits = json!([{ "path": ["beads", 7, "radius"], "value": "7 mm" }]);
     let refused = refusal(json!({ "verb": "check", "text": text("dry"), "edits": edits }));

@@ -147,6 +147,21 @@ fn a_body_of_a_gigabyte_is_refused_before_it_comes() {
     assert_eq!(&head, b"HTTP/1.1 413");
 }
 
+#[test]
+fn a_body_without_a_length_is_cut_off() {
+    let served = Served::start();
+    let headers: String =
+        served.headers().iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
+    let request = format!("POST /answer HTTP/1.1\r\n{headers}Transfer-Encoding: chunked\r\n\r\n");
+    let mut stream = TcpStream::connect(("127.0.0.1", served.port)).unwrap();
+    stream.write_all(request.as_bytes()).unwrap();
+    let chunk = format!("100000\r\n{}\r\n", " ".repeat(1 << 20));
+    let sent = (0..1024).take_while(|_| stream.write_all(chunk.as_bytes()).is_ok()).count();
+    // 96 MB are taken, and what the sockets hold.
+    assert!((96..200).contains(&sent), "{sent} MB");
+    assert_eq!(status(&served.post("/answer?lane=a", PRESETS, &[])), 200);
+}
+
 fn fit() -> String {
     json!({ "verb": "fit", "text": text("dry"), "table": "", "options": {} }).to_string()
 }

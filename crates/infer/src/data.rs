@@ -30,8 +30,8 @@ impl Observable {
         match self {
             Self::Incident => "tof_incident_s",
             Self::Reflected => "tof_reflected_s",
-            Self::WallOverPassing => "wall_over_passing",
-            Self::ReturningOverPassing => "returning_over_passing",
+            Self::WallOverPassing => "wall_over_incident",
+            Self::ReturningOverPassing => "reflected_over_incident",
         }
     }
 
@@ -40,8 +40,8 @@ impl Observable {
         match self {
             Self::Incident => "incident ToF",
             Self::Reflected => "reflected ToF",
-            Self::WallOverPassing => "wall/passing peak",
-            Self::ReturningOverPassing => "returning/passing peak",
+            Self::WallOverPassing => "wall/incident peak",
+            Self::ReturningOverPassing => "reflected/incident peak",
         }
     }
 

@@ -56,9 +56,9 @@ pub fn write_shots(shots: &[Shot], curves: &Curves, out: &mut dyn Write) -> io::
 }
 
 const PULSES: [(&str, PulseKind); 3] = [
-    ("passing", PulseKind::Incident),
+    ("incident", PulseKind::Incident),
     ("wall", PulseKind::Wall),
-    ("returning", PulseKind::Reflected),
+    ("reflected", PulseKind::Reflected),
 ];
 
 fn shot_line(shot: Option<&Shot>, keep_dubious: bool) -> Line {
@@ -77,9 +77,9 @@ fn shot_line(shot: Option<&Shot>, keep_dubious: bool) -> Line {
     line.push(number("tof_correlation", flight.and_then(Flight::correlation)));
     for (name, ratio) in [
         ("wall", flight.map(|flight| flight.wall_over_incident)),
-        ("returning", flight.and_then(|flight| flight.reflected_over_incident)),
+        ("reflected", flight.and_then(|flight| flight.reflected_over_incident)),
     ] {
-        let title = format!("{name}_over_passing");
+        let title = format!("{name}_over_incident");
         line.extend(estimate(&title, &format!("{title}_sigma"), ratio));
     }
     let height = |(name, kind)| number(&format!("{name}_peak_v"), picked(kind).map(|p| p.height));
@@ -132,8 +132,8 @@ fn speed_line(case: Option<&str>, row: Option<&SpeedRow>, none: Option<&Unmeasur
     };
     summarised("tof_incident_s", row.map(|row| row.incident_s));
     summarised("tof_reflected_s", row.and_then(|row| row.reflected_s));
-    summarised("wall_over_passing", row.map(|row| row.wall_over_incident));
-    summarised("returning_over_passing", row.and_then(|row| row.reflected_over_incident));
+    summarised("wall_over_incident", row.map(|row| row.wall_over_incident));
+    summarised("reflected_over_incident", row.and_then(|row| row.reflected_over_incident));
     for (at, (name, _)) in PULSES.into_iter().enumerate() {
         let width = row.and_then(|row| row.widths_s[at]);
         line.push(number(&format!("{name}_width_s"), width.map(|width| width.mean)));

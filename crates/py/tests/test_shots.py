@@ -161,7 +161,7 @@ def test_results_convert_with_units(small):
     assert data["tof_incident_s"].attrs["units"] == "s" and data["wall_peak_n"].attrs["units"] == "N"
     assert data["speed_m_s"].attrs["units"] == "m/s"
     assert [unit(f"tof_incident_s{of}") for of in ("", "_error", "_deviation")] == ["s", "s", "s"]
-    assert unit("wall_over_passing_err") == unit("tof_incident_s_error", dimensionless=True) == "1"
+    assert unit("wall_over_incident_err") == unit("tof_incident_s_error", dimensionless=True) == "1"
     table = swept.to_pandas()
     assert table.index.name == "speed_m_s" and table.attrs["units"]["tof_reflected_s"] == "s"
     found = hc.ensemble(small, [[0.2], [0.4]], {"young_modulus": [200e9, 210e9, 220e9]})

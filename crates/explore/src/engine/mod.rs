@@ -45,6 +45,9 @@ pub enum Request {
     Shot {
         /// Text of the experiment.
         text: String,
+        /// Changes to make first.
+        #[serde(default)]
+        edits: Vec<Edit>,
         /// Samples of signals and motion; 0 for none.
         #[serde(default)]
         samples: usize,
@@ -166,8 +169,9 @@ fn dispatch(request: &Request, verbs: &dyn Verbs) -> Result<Reply, Refusal> {
         Request::Check { text, edits } => {
             outline::check(text, edits).map(Box::new).map(Reply::Check)
         }
-        Request::Shot { text, samples, draft } => {
-            shot::shot(text, *samples, *draft).map(Box::new).map(Reply::Shot)
+        Request::Shot { text, edits, samples, draft } => {
+            let text = edit::edited(text, edits)?;
+            shot::shot(&text, *samples, *draft).map(Box::new).map(Reply::Shot)
         }
         Request::Batch { text, speeds, shard } => {
             batch::batch(text, speeds, *shard).map(Box::new).map(Reply::Batch)

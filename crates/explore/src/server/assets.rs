@@ -31,6 +31,7 @@ pub(super) static ASSETS: &[Asset] = assets![
     "plots.js": "text/javascript; charset=utf-8",
     "row.js": "text/javascript; charset=utf-8",
     "scenes.js": "text/javascript; charset=utf-8",
+    "story.js": "text/javascript; charset=utf-8",
     "transport.js": "text/javascript; charset=utf-8",
 ];
 

@@ -1,15 +1,16 @@
 // The page in a real browser: looks, keyboard, files, scenes, fit, link; no violation of axe-core.
 
 import assert from "node:assert/strict";
-import { execFileSync, spawn } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createServer } from "node:http";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, truncateSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { basename, extname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { deflateRawSync } from "node:zlib";
 import { chromium } from "playwright-core";
+import { KINDS, hosted, served } from "./hosts.mjs";
+import { recorded, tdms } from "./recordings.mjs";
 
 // What answers: `native`, the program; a folder, the static site in it; an HTML file, itself.
 const [engine, program, browserPath, shots] = process.argv.slice(2);
@@ -28,49 +29,10 @@ const EQUAL = isNative ? 0 : 1e-12;
  */
 const SAME_INSTRUCTIONS = isNative || process.arch !== "x64" ? {} : { GLIBC_TUNABLES: "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2", HERTZCHAIN_INSTRUCTION_SET: "sse2" };
 
-/** Starts the program and returns its address. */
-async function served() {
-  const server = spawn(program, ["explore", "--no-browser"], { stdio: ["ignore", "pipe", "pipe"] });
-  const address = await new Promise((found, failed) => {
-    let said = "";
-    const hear = (text) => {
-      said += text;
-      const match = /http:\/\/127\.0\.0\.1:\d+\/\?token=[0-9a-f]+/.exec(said);
-      if (match) found(match[0]);
-    };
-    server.stdout.on("data", hear);
-    server.stderr.on("data", hear);
-    server.on("exit", () => failed(new Error(said)));
-  });
-  const close = async () => {
-    const ended = new Promise((done) => server.on("exit", done));
-    server.kill("SIGINT");
-    assert.equal(await ended, 130, "Ctrl-C ends the program with its exit code");
-  };
-  return { address, close };
-}
-
-const KINDS = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".wasm": "application/wasm" };
-
-/** Serves a folder as any static host does. */
-async function hosted(site) {
-  const server = createServer((request, response) => {
-    const name = new URL(request.url, "http://host").pathname.slice(1) || "index.html";
-    try {
-      const body = readFileSync(join(site, name));
-      response.writeHead(200, { "Content-Type": KINDS[extname(name)] ?? "application/octet-stream" }).end(body);
-    } catch {
-      response.writeHead(404).end();
-    }
-  });
-  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
-  return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
-}
-
 const flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 
 const onDisk = engine.endsWith(".html");
-const { address, close } = isNative ? await served() : onDisk ? { address: pathToFileURL(resolve(engine)).href, close: () => {} } : await hosted(engine);
+const { address, close } = isNative ? await served(program) : onDisk ? { address: pathToFileURL(resolve(engine)).href, close: () => {} } : await hosted(engine);
 const browser = await chromium.launch({ executablePath: browserPath, args: flags, timeout: PATIENCE });
 const faults = [];
 
@@ -124,39 +86,27 @@ async function violations(page, where) {
 
 const look = (page, name, options = {}) => (shots ? page.screenshot({ path: join(shots, `${name}.png`), ...options }) : null);
 
-/** A shot as a card at 1 MHz records it: 10 mV/N, 400 µs before the impact, some noise. */
-async function recorded(page) {
-  const { interval, signals } = await page.evaluate(async () => {
-    const { ask, decoded } = hertzchain;
-    const [{ text }] = await ask("test", { verb: "presets" });
-    const { motion } = await ask("test", { verb: "shot", text, samples: 3000 });
-    return { interval: motion.interval_s, signals: [motion.sensor_n, motion.wall_n].map((one) => [...decoded(one)]) };
-  });
-  const interval_s = 1e-6;
-  const volts = (signal, sample) => {
-    const time_s = sample * interval_s - 400e-6;
-    const noise = 0.002 * Math.sin(37.7 * sample) * Math.cos(11.3 * sample);
-    return noise + (time_s < 0 ? 0 : 0.01 * signal[Math.min(signal.length - 1, Math.round(time_s / interval))]);
-  };
-  return { interval_s, channels: signals.map((signal) => Array.from({ length: 3000 }, (_, sample) => volts(signal, sample))) };
-}
-
-/** A TDMS file of one segment: channels of doubles with their sampling interval. */
-function tdms(interval_s, channels) {
-  const u32 = (value) => Buffer.from(Uint32Array.of(value).buffer);
-  const u64 = (value) => Buffer.from(BigUint64Array.of(BigInt(value)).buffer);
-  const doubles = (values) => Buffer.from(Float64Array.from(values).buffer);
-  const text = (words) => Buffer.concat([u32(Buffer.byteLength(words)), Buffer.from(words)]);
-  const [DOUBLE, NONE] = [10, 0xffffffff];
-  const objects = channels.map((channel, at) => Buffer.concat([
-    text(`/'shots'/'channel ${at + 1}'`), u32(20), u32(DOUBLE), u32(1), u64(channel.length),
-    u32(1), text("wf_increment"), u32(DOUBLE), doubles([interval_s]),
-  ]));
-  const above = ["/", "/'shots'"].map((path) => Buffer.concat([text(path), u32(NONE), u32(0)]));
-  const about = Buffer.concat([u32(2 + channels.length), ...above, ...objects]);
-  const data = Buffer.concat(channels.map(doubles));
-  const contents = 0b1110;
-  return Buffer.concat([Buffer.from("TDSm"), u32(contents), u32(4713), u64(about.length + data.length), u64(about.length), about, data]);
+/** A page of another origin, which knows the token, gets no answer and can't frame the page. */
+async function stranger() {
+  writeFileSync(join(folder, "index.html"), "<!doctype html><title>another page</title>");
+  const other = await hosted(folder);
+  const page = await browser.newPage();
+  await page.goto(other.address);
+  const got = await page.evaluate(async (address) => {
+    const { origin, searchParams } = new URL(address);
+    const headers = { "Content-Type": "application/json", "X-Hertzchain-Token": searchParams.get("token") };
+    const reach = (more) => fetch(`${origin}/answer`, { method: "POST", body: '{"verb":"presets"}', ...more }).then((reply) => reply.text(), () => "");
+    const frame = document.createElement("iframe");
+    frame.src = address;
+    const loaded = new Promise((done) => frame.addEventListener("load", done));
+    document.body.append(frame);
+    await loaded;
+    return [await reach({ headers }), await reach({ mode: "no-cors" })];
+  }, address);
+  assert.deepEqual(got, ["", ""]);
+  assert.equal(await page.frames()[1].locator("#row").count(), 0, "the page is in a frame of another origin");
+  await page.close();
+  other.close();
 }
 
 const tests = {
@@ -275,6 +225,37 @@ const tests = {
     }
     const missed = await page.evaluate((seen) => [...document.querySelectorAll("[data-control]")].filter((one) => !seen.includes(one.dataset.control)).map((one) => one.outerHTML.slice(0, 160)), [...seen]);
     assert.deepEqual(missed, []);
+    await page.context().close();
+  },
+
+  async "a screen reader gets names, values, tables and announcements"() {
+    const page = await opened();
+    const client = await page.context().newCDPSession(page);
+    const read = async () => (await client.send("Accessibility.getFullAXTree")).nodes.filter((node) => !node.ignored);
+    const property = (node, name) => node.properties?.find((one) => one.name === name)?.value.value;
+    await page.click(".numbers summary");
+    for (const name of ["text", "fit", "laws", "theory", "controls"]) {
+      await page.click(`#tab-${name}`);
+      await page.evaluate(() => document.querySelectorAll("#pane-controls details").forEach((one) => (one.open = true)));
+      const reached = (await read()).filter((node) => property(node, "focusable") && node.role.value !== "RootWebArea");
+      const nameless = reached.filter((node) => !node.name?.value.trim() || ["generic", "none"].includes(node.role.value));
+      assert.deepEqual(nameless.map((node) => `${node.role.value} ${node.nodeId}`), [], name);
+      assert.ok(reached.length > 30, `${name}: ${reached.length}`);
+    }
+    const nodes = await read();
+    const named = (role) => nodes.filter((node) => node.role.value === role).map((node) => node.name.value);
+    for (const title of ["Pulses", "Times of flight", "Energy at the end"]) assert.ok(named("table").includes(title), `${title}: ${named("table")}`);
+    assert.ok(named("columnheader").length > 10 && named("image").some((name) => /the pulse is at contact/.test(name)), String(named("image")));
+    const sliders = nodes.filter((node) => node.role.value === "slider").map((node) => property(node, "valuetext"));
+    assert.ok(sliders.length > 5 && sliders.every(Boolean), String(sliders));
+    await page.locator("[data-group=striker] input[type=range]").focus();
+    await page.keyboard.press("PageUp");
+    await has(page, "#live", "Computed: incident");
+    await page.waitForFunction(() => !document.querySelector("#live").textContent.includes("761.90"));
+    await ready(page);
+    await page.focus("#signals svg");
+    await page.keyboard.press("ArrowRight");
+    await has(page, "#live", "sensor bead");
     await page.context().close();
   },
 
@@ -422,6 +403,14 @@ const tests = {
     assert.match(await tile(page, 0), /761\.9/);
     assert.equal(await page.evaluate(() => globalThis.executed), undefined);
     await page.context().close();
+    const large = join(folder, "large.csv");
+    writeFileSync(large, "");
+    truncateSync(large, 1 << 30);
+    const stuffed = await opened();
+    await stuffed.setInputFiles("#file", large);
+    await has(stuffed, "#pane-fit", "the page takes up to 64 MB");
+    await stuffed.context().close();
+    if (isNative) await stranger();
     for (const fragment of ["#s=%00", "#s=AAAA", `#s=${deflateRawSync(Buffer.alloc(1 << 24, "[")).toString("base64url")}`]) {
       const other = await opened({ url: address + fragment });
       assert.match(await tile(other, 0), /761\.9/);
@@ -440,7 +429,7 @@ const tests = {
     await page.fill("#text", text.replace("count = 40", "count = 400"));
     await page.waitForFunction(() => document.querySelector("#row").getAttribute("aria-label").includes("400 beads"));
     await page.click("#tab-fit");
-    await page.getByRole("checkbox", { name: /young modulus/ }).check();
+    await page.getByRole("checkbox", { name: /Young modulus/ }).check();
     await page.getByRole("button", { name: "Fit", exact: true }).click();
     await page.getByRole("button", { name: "Cancel" }).click();
     await has(page, "#pane-fit", "The fit was cancelled.");
@@ -448,42 +437,80 @@ const tests = {
     await page.context().close();
   },
 
-  async "a fit ends with values and errors"() {
+  async "a fit ends with values and errors, or says what is not determined"() {
     const page = await opened();
     await page.click("#tab-fit");
     await page.getByRole("button", { name: "Noisy data of this row" }).click();
     await page.waitForFunction(() => document.querySelector("#pane-fit button.primary:not(:disabled)"));
-    await page.getByRole("checkbox", { name: /young modulus/ }).check();
+    await page.getByRole("checkbox", { name: /Young modulus/ }).check();
     await page.getByRole("button", { name: "Fit", exact: true }).click();
     await page.waitForSelector("#pane-fit h3:has-text('Result')");
     await violations(page, "a fit");
     await look(page, "fit");
     const found = await page.innerText("#pane-fit table.result >> nth=0");
     assert.match(found, /±/);
+    for (const name of [/Poisson ratio/, /Shear viscosity/]) await page.getByRole("checkbox", { name }).check();
+    await page.getByRole("button", { name: "Fit", exact: true }).click();
+    await has(page, "#pane-fit", "Not determined:");
     await page.context().close();
   },
 
-  async "a link and a reload bring the state back"() {
+  async "a link and a reload bring the whole state back"() {
     const page = await opened();
     await page.selectOption("#preset", "gear");
     await ready(page);
-    const before = await tile(page, 0);
+    await page.click("#tab-fit");
+    await page.getByRole("button", { name: "Noisy data of this row" }).click();
+    await has(page, "#pane-fit", "9 speeds");
+    await page.selectOption("#reference", "this row");
+    await page.click("#tab-controls");
+    await page.locator("[data-group=striker] input[type=text]").fill("0,7 m/s");
+    await page.keyboard.press("Tab");
+    await page.waitForFunction(() => document.querySelector("#preset").value === "");
+    await ready(page);
+    await page.selectOption("#magnify", "50");
+    await page.selectOption("#curve-scale", "linear");
+    const state = (page) => page.evaluate(() => [...["#magnify", "#curve-scale", "#reference"].map((one) => document.querySelector(one).value), document.querySelector("#clock").textContent, document.querySelector("#tiles dd").textContent, document.querySelector("#text").value]);
+    const before = await state(page);
+    assert.deepEqual(before.slice(0, 3), ["50", "linear", "pinned"]);
     await page.click("summary:has-text('Share')");
     await page.click("[data-copy=link]");
     await has(page, "#toast", "The link is on the clipboard");
     assert.match(page.url(), /#s=/);
     const link = await page.evaluate(() => navigator.clipboard.readText());
     const again = await opened({ url: link });
-    assert.equal(await tile(again, 0), before);
     await page.reload();
-    await ready(page);
-    assert.equal(await tile(page, 0), before);
-    await page.click("summary:has-text('Share')");
-    await page.click("[data-copy=shell]");
-    await has(page, "#toast", "command lines");
-    assert.match(await page.evaluate(() => navigator.clipboard.readText()), /hertzchain shot --preset gear/);
+    for (const one of [again, page]) {
+      await ready(one);
+      await has(one, "#pane-fit", "9 speeds");
+      assert.deepEqual(await state(one), before);
+    }
     await page.context().close();
     await again.context().close();
+  },
+
+  async "copied command lines give the page's numbers"() {
+    const page = await opened();
+    const lines = async (what) => {
+      await page.click("summary:has-text('Share')");
+      await page.click(`[data-copy=${what}]`);
+      await has(page, "#toast", what === "shell" ? "command lines" : "Python lines");
+      return page.evaluate(() => navigator.clipboard.readText());
+    };
+    await page.selectOption("#preset", "gear");
+    await ready(page);
+    assert.match(await lines("shell"), /hertzchain shot --preset gear --json/);
+    assert.match(await lines("python"), /row = hc\.preset\("gear"\)/);
+    await page.locator("[data-group=striker] input[type=text]").fill("0,7 m/s");
+    await page.keyboard.press("Tab");
+    await page.waitForFunction(() => document.querySelector("#preset").value === "");
+    await ready(page);
+    const copied = (await lines("shell")).replaceAll(/^hertzchain/gm, resolve(program));
+    const shot = copied.split("\n").filter((line) => !/ sweep /.test(line)).join("\n");
+    const there = JSON.parse(execFileSync("bash", ["-c", shot], { cwd: folder, encoding: "utf8", env: { ...process.env, ...SAME_INSTRUCTIONS } }));
+    const here = await asked(page, { verb: "shot", text: await page.inputValue("#text") });
+    assert.ok(Math.abs(here.tof_incident_s / there.tof_incident_s - 1) <= EQUAL && there.speed_m_s === 0.7, `${here.tof_incident_s} ${there.tof_incident_s}`);
+    await page.context().close();
   },
 
   async "files are saved"() {
@@ -502,24 +529,30 @@ const tests = {
     await page.context().close();
   },
 
-  async "how long the answers to a slider's move take"() {
+  async "how long a slider's move takes"() {
     const page = await opened();
     const times = await page.evaluate(async () => {
-      const { ask } = hertzchain;
-      const presets = await ask("test", { verb: "presets" });
-      const { text } = presets[0];
-      const took = async (request) => {
-        const all = [];
-        for (let at = 0; at < 7; at++) {
-          const began = performance.now();
-          await ask("test", request);
-          all.push(performance.now() - began);
-        }
-        return all.sort((a, b) => a - b)[3];
-      };
-      return { shot: await took({ verb: "shot", text, samples: 500, draft: true }), curve: await took({ verb: "batch", text, speeds: { from_m_s: 0.05, to_m_s: 2.5, count: 60 } }) };
+      Object.assign(hertzchain.curve, { draft: 60, full: 60 });
+      const slider = document.querySelector("[data-group=striker] input[type=range]");
+      const [tiles, curve] = ["#tiles", "#curve svg"].map((one) => document.querySelector(one));
+      const changed = (place) => new Promise((done) => {
+        const seen = new MutationObserver(() => (seen.disconnect(), requestAnimationFrame(() => setTimeout(done))));
+        seen.observe(place, { childList: true });
+      });
+      const moves = { row: [], curve: [] };
+      for (let move = 0; move < 11; move++) {
+        const began = performance.now();
+        const took = (name) => () => moves[name].push(performance.now() - began);
+        // The page redraws row and signals in one go with the numbers.
+        const drawn = [changed(tiles).then(took("row")), changed(curve).then(took("curve"))];
+        slider.value = 400 + 20 * move;
+        slider.dispatchEvent(new Event("input"));
+        await Promise.all(drawn);
+      }
+      return moves;
     });
-    console.log(`  shot ${times.shot.toFixed(0)} ms, curve of 60 speeds ${times.curve.toFixed(0)} ms`);
+    const words = Object.entries(times).map(([name, all]) => `${name} ${Math.min(...all).toFixed(0)} to ${Math.max(...all).toFixed(0)}, median ${all.sort((a, b) => a - b)[5].toFixed(0)} ms`);
+    console.log(`  ${words.join("; ")}`);
     await page.context().close();
   },
 };

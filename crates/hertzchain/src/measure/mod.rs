@@ -3,6 +3,8 @@
 mod results;
 
 pub use results::{json, write_json};
+// For the verb `live`, which WebAssembly has not.
+#[cfg(not(target_family = "wasm"))]
 pub(crate) use results::{law, row, shot};
 
 use crate::failure::Failure;

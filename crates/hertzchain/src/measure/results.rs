@@ -99,12 +99,12 @@ pub(crate) fn shot(shot: &Shot) -> Value {
             all["tof_incident_s"] = estimate(flight.incident_s);
             all["tof_reflected_s"] = flight.reflected_s.map_or(Value::Null, estimate);
             all["tof_correlation"] = json!(flight.correlation());
-            all["wall_over_passing"] = estimate(flight.wall_over_incident);
-            all["returning_over_passing"] =
+            all["wall_over_incident"] = estimate(flight.wall_over_incident);
+            all["reflected_over_incident"] =
                 flight.reflected_over_incident.map_or(Value::Null, estimate);
-            all["passing"] = picked(&flight.picks.incident);
+            all["incident"] = picked(&flight.picks.incident);
             all["wall"] = picked(&flight.picks.wall);
-            all["returning"] = flight.picks.reflected.as_ref().map_or(Value::Null, picked);
+            all["reflected"] = flight.picks.reflected.as_ref().map_or(Value::Null, picked);
         }
     }
     all
@@ -147,8 +147,8 @@ pub(crate) fn row(row: &SpeedRow) -> Value {
         "returns_missing": row.returns_missing,
         "tof_incident_s": summary(&row.incident_s),
         "tof_reflected_s": row.reflected_s.as_ref().map(summary),
-        "wall_over_passing": summary(&row.wall_over_incident),
-        "returning_over_passing": row.reflected_over_incident.as_ref().map(summary),
+        "wall_over_incident": summary(&row.wall_over_incident),
+        "reflected_over_incident": row.reflected_over_incident.as_ref().map(summary),
         "tof_incident_shared_s": row.shared_s[0],
         "tof_reflected_shared_s": row.shared_s[1],
         "tof_incident_at_mean_speed_s": row.at_mean_speed_s[0].map(estimate),

@@ -145,7 +145,7 @@ def _case(raw: Mapping[str, Any]) -> Case:
     columns: dict[str, list[float]] = {}
     for row in raw["speeds"]:
         found = {"speed_m_s": row["speed_m_s"]["value"], "speed_error_m_s": row["speed_m_s"]["sigma"], "shots": row["shots"]}
-        for name in ("tof_incident_s", "tof_reflected_s", "wall_over_passing", "returning_over_passing"):
+        for name in ("tof_incident_s", "tof_reflected_s", "wall_over_incident", "reflected_over_incident"):
             found |= {name: (row[name] or {}).get("mean"), f"{name}_error": (row[name] or {}).get("error")}
         for name, value in (found | {"tof_correlation": row["tof_correlation"]}).items():
             columns.setdefault(name, []).append(number(value))

@@ -383,8 +383,8 @@ pub(super) fn short(of: Observable) -> &'static str {
     match of {
         Observable::Incident => "incident",
         Observable::Reflected => "reflected",
-        Observable::WallOverPassing => "wall/passing",
-        Observable::ReturningOverPassing => "returning/passing",
+        Observable::WallOverPassing => "wall/incident",
+        Observable::ReturningOverPassing => "reflected/incident",
     }
 }
 

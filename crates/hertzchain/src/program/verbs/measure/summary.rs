@@ -122,8 +122,8 @@ fn curve(case: &Case) -> String {
         "s.d.",
         "reflected (µs)",
         "s.d.",
-        "wall/passing",
-        "returning/passing",
+        "wall/incident",
+        "reflected/incident",
     ];
     // With what all shots share, which no scatter shows; one shot's own error holds it.
     let mean = |summary: Option<Summary>, shared_s: f64| {
