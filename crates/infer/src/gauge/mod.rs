@@ -16,7 +16,7 @@ pub use self::{
     scan::Scan,
 };
 
-use crate::curve::{CurveProblem, Joint, Model, Part, Supply};
+use crate::curve::{Curve, CurveProblem, Model, Supply};
 use crate::data::{Data, Observable};
 use crate::free::{FreeNumber, FreeNumbers};
 use crate::goodness::chi_square_of;
@@ -111,6 +111,10 @@ impl Gauge {
     /// The dry curve against its model.
     pub fn dry(&self) -> &CurveProblem {
         &self.dry
+    }
+
+    fn dry_curve(&self) -> Curve {
+        self.dry.curves()[0].clone()
     }
 
     /// How well the dry curve follows its model.
@@ -307,7 +311,7 @@ impl Gauge {
     }
 
     /// The wet curve with K and A that depend on speed as `power` or `each` says.
-    fn wet_in_form(&self, form: &str) -> Result<CurveProblem, InferError> {
+    fn wet_in_form(&self, form: &str) -> Result<Curve, InferError> {
         let experiment = self.wet.experiment();
         let own = self.wet.numbers().as_slice();
         let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();
@@ -317,7 +321,7 @@ impl Gauge {
         }
         let model = Model::new(experiment, FreeNumbers::new(numbers)?)?;
         let model = model.with_accuracy(self.wet.accuracy);
-        Ok(CurveProblem::part(model, self.data.clone()))
+        Ok(Curve::new(model, self.data.clone()))
     }
 
     /// K in N/m^{3/2} and A in s that an oil gives at the speeds of the wet data.
@@ -327,20 +331,18 @@ impl Gauge {
         [stiffness, relaxation]
     }
 
-    fn compare(&self, oil: &Oil, wet: &CurveProblem) -> Result<Match, InferError> {
+    fn compare(&self, oil: &Oil, wet: &Curve) -> Result<Match, InferError> {
         let count = self.dry_fit.point.len();
         let speeds = self.data.speeds_m_s();
         let [stiffness, relaxation] = self.contacts_of(oil);
         let own = self.wet_own(&speeds);
         let of_wet = (0..self.common()).chain(count..count + own.len()).map(Supply::Free);
         let contacts = stiffness.into_iter().chain(relaxation).map(Supply::Fixed);
-        let supplies = of_wet.chain(contacts).collect();
-        let wet_part = Part { problem: wet.clone(), supplies };
-        let supplies = (0..count).map(Supply::Free).collect();
-        let dry_part = Part { problem: self.dry.clone(), supplies };
+        let wet = wet.clone().supplied(of_wet.chain(contacts).collect());
         let pairs = self.dry.parameters().iter().zip(&self.dry_fit.point);
         let dry = pairs.map(|(parameter, value)| Parameter { start: *value, ..parameter.clone() });
-        let joint = Joint::new(dry.chain(own.clone()).collect(), vec![dry_part, wet_part]);
+        let parameters = dry.chain(own.clone()).collect();
+        let joint = CurveProblem::unchecked(parameters, vec![self.dry_curve(), wet]);
         // Two or three numbers that start at their dry values, to a hundredth of what would change a
         // verdict.
         let how = Fitting { tolerance: 0.01, iterations: 20, ..Fitting::default() };
@@ -363,6 +365,7 @@ impl Gauge {
         let Some(chi_square) = chi_square_of(residuals.iter().copied(), own.len()) else {
             return InferError::input("its distance is not finite");
         };
+        let label = joint.curves()[1].labels()[largest.residual - first].clone();
         let own = own.into_iter().enumerate().map(|(at, parameter)| NuisanceParameter {
             parameter,
             value: fit_result.point[count + at],
@@ -372,7 +375,7 @@ impl Gauge {
             oil: oil.name.clone(),
             distance: (chi_square.value / chi_square.freedom as f64).sqrt(),
             chi_square,
-            largest: (wet.residual_label(largest.residual - first), largest.sigmas),
+            largest: (label, largest.sigmas),
             own: own.collect(),
         })
     }

@@ -1,7 +1,7 @@
 //! K and A of the wet contacts, speed by speed.
 
 use super::{CONTACT, Gauge, Scan};
-use crate::curve::{CurveProblem, Joint, Part, Supply};
+use crate::curve::{Curve, CurveProblem, Supply};
 use crate::data::{Data, Observable};
 use crate::goodness::LEAST_BY_CHANCE;
 use crate::linear::{combine, dot, least_squares};
@@ -254,7 +254,7 @@ impl Gauge {
         row: usize,
         (free, at): (Free, [f64; 2]),
         dry: &[f64],
-    ) -> Joint {
+    ) -> CurveProblem {
         let data = Data { rows: vec![self.data.rows[row].clone()], ..self.data.clone() };
         let numbers = self.wet.numbers().as_slice();
         let contact = numbers[numbers.len() - CONTACT..].iter();
@@ -278,8 +278,8 @@ impl Gauge {
             Free::StiffnessAlone => Supply::Fixed(at[1]),
         });
         start.truncate(if free == Free::Both { 2 } else { 1 });
-        let problem = CurveProblem::part(self.wet.clone(), data);
-        Joint::new(start, vec![Part { problem, supplies }])
+        let curve = Curve::new(self.wet.clone(), data).supplied(supplies);
+        CurveProblem::unchecked(start, vec![curve])
     }
 
     /// What a change of A is worth in K, from derivatives of the one residual.
