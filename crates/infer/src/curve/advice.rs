@@ -3,8 +3,8 @@
 
 use super::candidates::{ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, expected, pushed};
 use super::contacts::three_for_two;
-use super::model::Model;
 use super::joint::CurveProblem;
+use super::model::Model;
 use super::problem::Curve;
 use crate::data::{Data, Observable};
 use crate::free::Form;

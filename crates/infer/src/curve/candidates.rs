@@ -1,7 +1,7 @@
 //! What could be measured next, and how it depends on the parameters.
 
-use super::model::{Model, Speeds};
 use super::joint::CurveProblem;
+use super::model::{Model, Speeds};
 use crate::data::{Data, DataRow, Freedom, Observable};
 use crate::free::Form;
 use crate::least_squares::{JUMPING, jacobian_at};

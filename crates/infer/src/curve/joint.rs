@@ -79,7 +79,12 @@ impl CurveProblem {
         }
         self.parameters.iter().try_for_each(Parameter::check)?;
         // What has a prior needs no measured number.
-        let free: Vec<&str> = self.parameters.iter().filter(|p| p.prior == Prior::Flat).map(|p| p.name.as_str()).collect();
+        let free: Vec<&str> = self
+            .parameters
+            .iter()
+            .filter(|p| p.prior == Prior::Flat)
+            .map(|p| p.name.as_str())
+            .collect();
         let count = self.residual_count();
         if count < free.len() {
             let advice = three_for_two(self.model()).unwrap_or_else(|| {
@@ -253,7 +258,8 @@ impl Problem for CurveProblem {
             1 => label.clone(),
             _ => format!("{}, {label}", curve.data().file),
         };
-        let all = self.curves.iter().flat_map(|curve| curve.labels().iter().map(move |l| (curve, l)));
+        let all =
+            self.curves.iter().flat_map(|curve| curve.labels().iter().map(move |l| (curve, l)));
         all.skip(index).map(|(curve, label)| named(curve, label)).next().unwrap_or_default()
     }
 }

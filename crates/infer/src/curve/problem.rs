@@ -4,8 +4,8 @@ use super::joint::Supply;
 use super::model::{Model, Predicted, Speeds};
 use super::stencil::Stencil;
 use super::whiten::{Errors, whiten};
-use crate::data::{Data, DataRow, Observable};
 use crate::Parameter;
+use crate::data::{Data, DataRow, Observable};
 use crate::problem::{ModelError, Residuals, Response};
 use hertzchain_sim::{Fingerprint, Inputs};
 
@@ -36,7 +36,14 @@ impl Curve {
         let count = model.numbers().parameters(&data.speeds_m_s()).len();
         let (speeds, stencils) = curve_speeds(&data.speeds_m_s());
         let labels = data.rows.iter().flat_map(row_labels).collect();
-        Self { model, data, supplies: (0..count).map(Supply::Free).collect(), speeds, stencils, labels }
+        Self {
+            model,
+            data,
+            supplies: (0..count).map(Supply::Free).collect(),
+            speeds,
+            stencils,
+            labels,
+        }
     }
 
     /// The same with the model's parameters from elsewhere.

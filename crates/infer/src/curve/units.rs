@@ -17,7 +17,8 @@ impl Curve {
     /// start, has the measured times of flight at speeds that many times slower, and not at
     /// those that stand in the table.
     pub fn other_unit_of_speed(&self, start: &[f64]) -> Option<&'static str> {
-        let near = |factor: f64| self.middle_miss(start, factor).is_some_and(|miss| miss.abs() < NEAR);
+        let near =
+            |factor: f64| self.middle_miss(start, factor).is_some_and(|miss| miss.abs() < NEAR);
         if near(1.0) {
             return None;
         }

@@ -10,8 +10,8 @@ mod ball;
 mod grid;
 mod polynomial;
 
-use super::model::Predicted;
 use super::joint::CurveProblem;
+use super::model::Predicted;
 use crate::data::Data;
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Covariance, Fit, InferError, Parameter};
