@@ -126,7 +126,7 @@ fn posed(
     problem: &CurveProblem,
     arguments: &Arguments,
 ) -> Result<(CurveProblem, Vec<String>), Failure> {
-    let mut modelled = against.modelled(&arguments.modelled);
+    let mut modelled = arguments.modelled.of_other(&against.model);
     // A model far from the data is steep there: its noise would hide the minimum.
     modelled.accuracy = Accuracy(modelled.accuracy.0.min(ALTERNATIVES_ACCURACY));
     let data = problem.data().clone();
@@ -180,6 +180,7 @@ fn renamed(known: &Freed, own: &Experiment, free: &[String], alternative: &Exper
         bounds: all(&known.bounds),
         prior: all(&known.prior),
         scale: all(&known.scale),
+        systematic: known.systematic.clone(),
     }
 }
 
@@ -207,6 +208,7 @@ fn about(freed: Freed, parameters: &[&str]) -> Freed {
         bounds: known(freed.bounds),
         prior: known(freed.prior),
         scale: known(freed.scale),
+        systematic: freed.systematic,
     }
 }
 
@@ -220,7 +222,7 @@ fn alternative(
     seed: u64,
 ) -> Result<AlternativeModel, Failure> {
     // What was measured at one speed is left out together.
-    let groups = problem.measured().into_iter().map(|(row, _)| row).collect();
+    let groups = problem.measured().into_iter().map(|(_, row, _)| row).collect();
     let how = Folding { groups, parts: Some(PARTS.min(problem.data().rows.len())), seed };
     let foretells = enough(problem.data().rows.len(), fit.point.len())
         .then(|| cross_validate(kept, &fit, &how))

@@ -23,8 +23,8 @@ use crate::inference::{self, user, wanted};
 use crate::options::FitOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
-    Advice, Covariance, CurveProblem, Data, Fit, FitCurve, Fitting, FreeNumber, Goodness,
-    Identifiability, Loss, Observable, Parameter, Problem, PulseProblem, Speeds, Started,
+    Advice, Covariance, Curve, CurveProblem, Data, Fit, FitCurve, Fitting, FreeNumber, Goodness,
+    Identifiability, Loss, Observable, Parameter, Problem, PulseProblem, Started,
     fit as least_squares,
 };
 
@@ -61,17 +61,36 @@ pub struct FitResult {
     pub problem: CurveProblem,
     /// What came of it.
     pub inferred: Inferred,
-    /// The model at the best fit.
-    pub curve: FitCurve,
+    /// The models at the best fit, one a table.
+    pub curves: Vec<FitCurve>,
     /// Largest relative error of the model's times of flight there.
     pub accuracy: f64,
     /// What would settle what the data leave open, if they leave anything open.
     pub advice: Option<Advice>,
     /// Other models of the same data.
     pub alternatives: Option<AlternativeModels>,
-    /// The unit that speeds seem to be in, where the model does not follow and they seem not
-    /// to be in m/s.
-    pub unit_of_speed: Option<&'static str>,
+    /// The unit that speeds of a table seem to be in, where the model does not follow and they seem
+    /// not to be in m/s.
+    pub unit_of_speed: Option<(String, &'static str)>,
+}
+
+/// A table of a fit and what the fit makes of it.
+pub struct FittedTable<'a> {
+    /// The data and their model.
+    pub curve: &'a Curve,
+    /// The model at the best fit.
+    pub fit_curve: &'a FitCurve,
+    /// Place of its first residual.
+    pub first: usize,
+    /// Its residuals.
+    pub residuals: &'a [f64],
+}
+
+impl FittedTable<'_> {
+    /// Sum of its squared residuals.
+    pub fn chi_square(&self) -> f64 {
+        self.residuals.iter().map(|r| r * r).sum()
+    }
 }
 
 impl Inferred {
@@ -99,6 +118,22 @@ impl Inferred {
 }
 
 impl FitResult {
+    /// The tables, in the order of the pairs that were fitted.
+    pub fn tables<'a>(&'a self) -> Vec<FittedTable<'a>> {
+        let mut end = 0;
+        let table = |(curve, fit_curve): (&'a Curve, &'a FitCurve)| {
+            let first = end;
+            end += curve.data().value_count();
+            FittedTable {
+                residuals: &self.inferred.fit.residuals[first..end],
+                curve,
+                fit_curve,
+                first,
+            }
+        };
+        self.problem.curves().iter().zip(&self.curves).map(table).collect()
+    }
+
     /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
     /// each.
     pub(crate) fn unasked(&self, arguments: &Arguments) -> Vec<String> {
@@ -123,7 +158,8 @@ impl FitResult {
         let ratios = [Observable::WallOverPassing, Observable::ReturningOverPassing];
         let times_alone = !ratios.iter().any(|of| data.has(*of));
         let few = times_alone && data.value_count() <= 2 * pairs;
-        (few && self.inferred.fit.starts.len() == 1).then(|| {
+        let alone = self.curves.len() == 1 && self.inferred.fit.starts.len() == 1;
+        (few && alone).then(|| {
             "Several pairs of K and A may give the same two times of flight, and this fit looked for one: see whether \
              others fit as well by --starts with --bounds of both, or by `hertzchain gauge`, which follows all pairs"
                 .to_owned()
@@ -247,13 +283,19 @@ pub fn fit(
     experiment: &Experiment,
     options: &Arguments,
 ) -> Result<FitResult, Failure> {
-    let experiment = inference::in_case(experiment.clone(), &data.case)?;
-    let experiment = inference::changed(experiment, &options.modelled.set)?;
-    let model = inference::model(&experiment, &options.modelled, &options.freed)?;
-    fit_result(inference::problem(model, data.clone(), &options.freed)?, options)
+    fit_tables(&[(data.clone(), experiment.clone())], options)
 }
 
-/// Fits a curve, determines the uncertainty as the method asks, and compares with
+/// Fits several tables together, each to its own experiment: free numbers of one name are one
+/// parameter, but for those that [`own`](Arguments::own) names.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_tables(pairs: &[(Data, Experiment)], options: &Arguments) -> Result<FitResult, Failure> {
+    fit_result(inference::posed(pairs, options)?, options)
+}
+
+/// Fits curves, determines the uncertainty as the method asks, and compares with
 /// other models.
 ///
 /// # Errors
@@ -327,15 +369,21 @@ fn reported(
     (inferred, alternatives): (Inferred, Option<AlternativeModels>),
 ) -> Result<FitResult, Failure> {
     let (fit, covariance) = (&inferred.fit, &inferred.covariance);
-    let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
-    let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
-    let open = !inferred.identifiability.unidentifiable.is_empty() && fit.ending.converged();
+    let all = problem.curves();
+    let alone = all.len() == 1 && fit.ending.converged();
+    let open = !inferred.identifiability.unidentifiable.is_empty() && alone;
+    let curves = all.iter().map(|curve| curve.fit_curve(fit, covariance));
+    let accuracies = all.iter().map(|curve| curve.accuracy_reached(&fit.point));
+    let accuracies = accuracies.collect::<Result<Vec<f64>, _>>().map_err(user)?;
+    let start: Vec<f64> = inferred.parameters.iter().map(|p| p.start).collect();
+    let unit =
+        |curve: &Curve| Some((curve.data().file.clone(), curve.other_unit_of_speed(&start)?));
     let rejected = inferred.goodness.is_rejected();
     Ok(FitResult {
-        unit_of_speed: rejected.then(|| problem.other_unit_of_speed()).flatten(),
+        unit_of_speed: rejected.then(|| all.iter().find_map(unit)).flatten(),
         advice: open.then(|| problem.suggested_measurements(fit)),
-        curve: problem.fit_curve(fit, covariance).map_err(user)?,
-        accuracy: accuracy.map_err(user)?,
+        curves: curves.collect::<Result<_, _>>().map_err(user)?,
+        accuracy: accuracies.into_iter().fold(0.0, f64::max),
         alternatives,
         inferred,
         problem,

@@ -16,6 +16,13 @@ pub(super) fn of_table(arguments: &Arguments) -> Result<(), Failure> {
     refuse("--channel", !recorded.channel.is_empty(), why)?;
     refuse("--low-pass", recorded.low_pass.is_some(), why)?;
     refuse("--filter", recorded.filter.is_some(), why)?;
+    refuse(
+        "--own",
+        !arguments.own.is_empty() && arguments.also.is_empty(),
+        "is for several tables (--also): leave it out",
+    )?;
+    let why = "compares models of one table, and --also names others: compare without";
+    refuse("--against", !(arguments.against.is_empty() || arguments.also.is_empty()), why)?;
     let why = "can't be combined with --against: models are compared by likelihoods, and a robust loss is none; \
                compare without --robust, or leave outliers out of the table";
     refuse("--robust", arguments.robust && !arguments.against.is_empty(), why)?;
@@ -30,6 +37,9 @@ pub(super) fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
     let why = "compares models of a table of times of flight, and DATA are recordings: take their times by \
                `hertzchain measure` and compare models of speeds.csv, or fit the other model to the recordings by itself";
     refuse("--against", !arguments.against.is_empty(), why)?;
+    let why =
+        "fits several tables of times of flight together, and DATA are recordings: leave it out";
+    refuse("--also", !arguments.also.is_empty(), why)?;
     let why = "is for tables of times of flight, and DATA are recordings, whose noise is taken from themselves: leave it out";
     refuse("--tof-error", arguments.measured.tof_error.is_some(), why)?;
     refuse("--ratio-error", arguments.measured.ratio_error.is_some(), why)?;

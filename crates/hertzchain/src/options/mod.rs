@@ -22,7 +22,7 @@ pub use self::{
         Solver, SweepOptions,
     },
     values::{
-        Accuracy, Against, Assignment, Corner, Cost, Count, ErrorShots, Few, Frequency, Positive,
+        Accuracy, Against, Also, Assignment, Corner, Cost, Count, ErrorShots, Few, Frequency, Positive,
         Preload, Share, Speed, Threads, Time, TimeUnit, Voltage, WayKind,
     },
 };

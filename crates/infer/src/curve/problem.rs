@@ -82,6 +82,15 @@ impl Curve {
         Self { model: self.model.with_accuracy(accuracy), ..self }
     }
 
+    /// The largest relative error of its times of flight at a point of the problem.
+    ///
+    /// # Errors
+    /// What is in the way of a shot.
+    pub fn accuracy_reached(&self, point: &[f64]) -> Result<f64, ModelError> {
+        let speeds = Speeds::of_rows(&self.data.speeds_m_s());
+        self.model.accuracy_reached(&self.own(point), &speeds)
+    }
+
     pub(super) fn for_slopes(&self) -> Self {
         Self { model: self.model.clone().for_slopes(), ..self.clone() }
     }

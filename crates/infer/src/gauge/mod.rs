@@ -21,7 +21,8 @@ use crate::data::{Data, Observable};
 use crate::free::{FreeNumber, FreeNumbers};
 use crate::goodness::chi_square_of;
 use crate::{
-    Covariance, Fit, Fitting, Goodness, InferError, Parameter, Problem, fit, largest_residual,
+    Covariance, Fit, Fitting, Goodness, InferError, Parameter, Prior, Problem, fit,
+    largest_residual,
 };
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::signal::{ChiSquare, FitError, PowerLaw, power_law};
@@ -34,6 +35,8 @@ pub struct Chains<'a> {
     pub wet: &'a Experiment,
     /// Free numbers of the dry contacts, by names that both experiments know.
     pub free: &'a [String],
+    /// Systematic errors that both curves share, each with its standard deviation in SI.
+    pub systematic: &'a [(String, f64)],
     /// Nuisance parameters that each chain has for itself, known to both experiments by the same
     /// names: the load of a tapped row, which friction holds and no model predicts.
     pub own: &'a [String],
@@ -72,10 +75,13 @@ impl Gauge {
     /// dry fit.
     pub fn new(chains: &Chains<'_>, dry: Data, wet: Data) -> Result<Self, InferError> {
         let model = |experiment: &Experiment, more: &[&str]| -> Result<Model, InferError> {
-            let names = chains.free.iter().chain(chains.own).map(String::as_str);
-            let numbers = names.chain(more.iter().copied());
-            let numbers = numbers.map(|name| FreeNumber::find(experiment, name, None));
-            let numbers = FreeNumbers::new(numbers.collect::<Result<_, _>>()?)?;
+            let find = |name: &str| FreeNumber::find(experiment, name, None);
+            let free = chains.free.iter().map(|name| find(name));
+            let known = chains.systematic.iter();
+            let known = known.map(|(name, sd)| FreeNumber::systematic(experiment, name, *sd));
+            let own = chains.own.iter().map(|name| find(name));
+            let all = free.chain(known).chain(own).chain(more.iter().map(|name| find(name)));
+            let numbers = FreeNumbers::new(all.collect::<Result<_, _>>()?)?;
             Ok(Model::new(experiment, numbers)?.with_accuracy(chains.accuracy))
         };
         let Some(radius_m) = wet_radius_m(chains.wet) else {
@@ -362,7 +368,16 @@ impl Gauge {
                 own.len()
             ));
         }
-        let Some(chi_square) = chi_square_of(residuals.iter().copied(), own.len()) else {
+        let chi_square = match joint.parameters().iter().any(|p| p.prior != Prior::Flat) {
+            false => chi_square_of(residuals.iter().copied(), own.len()),
+            // What the wet curve makes worse: a shared error must not be pulled for nothing.
+            true => {
+                let rise = whole_chi_square(&joint, &fit_result)
+                    - whole_chi_square(&self.dry, &self.dry_fit);
+                ChiSquare::of(rise.max(0.0), residuals.len() - own.len())
+            }
+        };
+        let Some(chi_square) = chi_square else {
             return InferError::input("its distance is not finite");
         };
         let label = joint.curves()[1].labels()[largest.residual - first].clone();
@@ -379,6 +394,13 @@ impl Gauge {
             own: own.collect(),
         })
     }
+}
+
+/// Chi-square of data and priors.
+fn whole_chi_square(problem: &CurveProblem, fit: &Fit) -> f64 {
+    let priors = problem.parameters().iter().zip(&fit.point);
+    let priors = priors.filter_map(|(parameter, value)| parameter.prior.residual(*value));
+    fit.chi_square() + priors.map(|r| r * r).sum::<f64>()
 }
 
 /// A power law of speed through values that share a part of their errors.
