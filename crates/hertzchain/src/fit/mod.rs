@@ -213,19 +213,32 @@ fn unasked(fit: &Fit, (asked, reached): (f64, f64), starts: usize) -> Vec<String
 /// Times that a fit without a minimum is repeated with curves ten times as accurate.
 const MOST_FINER: u32 = 2;
 
-/// The same problem with more accurate curves, where a fit of curves found no minimum: their
-/// errors jump where the solver takes another number of steps, and hide what is small.
-fn finer<P: Modelled>(problem: &P, fit: &Fit, times: u32) -> Option<P> {
-    let more = !fit.ending.converged() && times < MOST_FINER;
-    more.then(|| problem.computed_to(0.1 * problem.accuracy()))
+/// The best fit, with the problem that it is of: with more accurate curves, where others have no
+/// minimum. Errors of curves jump where the solver takes another number of steps, and hide what is
+/// small.
+pub(crate) fn best_fit<P: Modelled>(
+    mut problem: P,
+    nuisances: usize,
+    how: &Fitting,
+) -> Result<(P, Fit), Failure> {
+    for _ in 0..MOST_FINER {
+        let fit = best_of_starts(&problem, nuisances, how)?;
+        if fit.ending.converged() {
+            return Ok((problem, fit));
+        }
+        let accuracy = 0.1 * problem.accuracy();
+        problem = problem.computed_to(accuracy);
+    }
+    let fit = best_of_starts(&problem, nuisances, how)?;
+    Ok((problem, fit))
 }
 
 /// A problem whose curves can be computed more accurately.
-trait Modelled: Problem + Clone {
+pub(crate) trait Modelled: Problem {
     /// The model's accuracy.
     fn accuracy(&self) -> f64;
     /// The same problem at another accuracy.
-    fn computed_to(&self, accuracy: f64) -> Self;
+    fn computed_to(self, accuracy: f64) -> Self;
 }
 
 impl Modelled for CurveProblem {
@@ -233,8 +246,8 @@ impl Modelled for CurveProblem {
         self.model().accuracy
     }
 
-    fn computed_to(&self, accuracy: f64) -> Self {
-        self.clone().with_accuracy(accuracy)
+    fn computed_to(self, accuracy: f64) -> Self {
+        self.with_accuracy(accuracy)
     }
 }
 
@@ -243,8 +256,8 @@ impl Modelled for PulseProblem {
         self.model().accuracy
     }
 
-    fn computed_to(&self, accuracy: f64) -> Self {
-        self.clone().with_accuracy(accuracy)
+    fn computed_to(self, accuracy: f64) -> Self {
+        self.with_accuracy(accuracy)
     }
 }
 
@@ -302,19 +315,7 @@ pub fn fit_tables(pairs: &[(Data, Experiment)], options: &Arguments) -> Result<F
 /// What is in the way of a fit.
 pub fn fit_result(problem: CurveProblem, arguments: &Arguments) -> Result<FitResult, Failure> {
     validation::of_table(arguments)?;
-    attempted(problem, 0, arguments)
-}
-
-/// The same, after so many attempts with less accurate curves.
-fn attempted(
-    problem: CurveProblem,
-    times: u32,
-    arguments: &Arguments,
-) -> Result<FitResult, Failure> {
-    let fit = best_of_starts(&problem, 0, &asked(arguments))?;
-    if let Some(finer) = finer(&problem, &fit, times) {
-        return attempted(finer, times + 1, arguments);
-    }
+    let (problem, fit) = best_fit(problem, 0, &asked(arguments))?;
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more(&problem, (&fit, &covariance), arguments)?;
     let found = concluded(&problem, &problem, (fit, covariance, more), arguments)?;
