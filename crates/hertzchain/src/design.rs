@@ -2,13 +2,12 @@
 
 use crate::csv::{Cell, Csv};
 use crate::failure::Failure;
-use crate::fit::best_fit;
 use crate::inference::{self, is_meant, references_json, user};
 use crate::options::{DesignOptions as Arguments, Preload, WayKind};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fit, Fitting,
-    Goodness, Identifiability, Kind, Problem, titled, ways, wrong_speed,
+    Goodness, Identifiability, Kind, Problem, fit, titled, ways, wrong_speed,
 };
 use hertzchain_sim::parse_speeds;
 use serde_json::{Value, json};
@@ -146,8 +145,8 @@ pub fn run_design(
     speeds: &[f64],
     arguments: &Arguments,
 ) -> Result<DesignResult, Failure> {
-    let (problem, fit) = best_fit(problem.clone(), 0, &Fitting::default())?;
-    let problem = &sized_by(problem, &fit, arguments)?;
+    let fit = fit(problem, &Fitting::default()).map_err(user)?;
+    let problem = &sized_by(problem.clone(), &fit, arguments)?;
     let ways = ways(problem.model().experiment(), &choices(arguments)).map_err(user)?;
     let errors = ExpectedErrors::like(problem.data());
     let candidates = problem.candidates(&fit, &ways, speeds, &errors).map_err(user)?;

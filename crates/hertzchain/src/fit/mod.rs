@@ -24,7 +24,7 @@ use crate::options::FitOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Advice, Covariance, Curve, CurveProblem, Data, Fit, FitCurve, Fitting, FreeNumber, Goodness,
-    Identifiability, Loss, Observable, Parameter, Problem, PulseProblem, Started,
+    Identifiability, Loss, Observable, Parameter, Prior, Problem, PulseProblem, Started,
     fit as least_squares,
 };
 
@@ -102,6 +102,12 @@ impl Inferred {
             true => f64::INFINITY,
             false => sd,
         }
+    }
+
+    /// Whether priors determine what the data leave open.
+    pub fn is_closed_by_priors(&self) -> bool {
+        let any = self.parameters.iter().any(|parameter| parameter.prior != Prior::Flat);
+        any && (0..self.parameters.len()).all(|at| self.standard_error(at).is_finite())
     }
 
     /// Minima of other starts that fit as well, and how many starts came to each.
@@ -216,7 +222,7 @@ const MOST_FINER: u32 = 2;
 /// The best fit, with the problem that it is of: with more accurate curves, where others have no
 /// minimum. Errors of curves jump where the solver takes another number of steps, and hide what is
 /// small.
-pub(crate) fn best_fit<P: Modelled>(
+fn best_fit<P: Modelled>(
     mut problem: P,
     nuisances: usize,
     how: &Fitting,
@@ -234,7 +240,7 @@ pub(crate) fn best_fit<P: Modelled>(
 }
 
 /// A problem whose curves can be computed more accurately.
-pub(crate) trait Modelled: Problem {
+trait Modelled: Problem {
     /// The model's accuracy.
     fn accuracy(&self) -> f64;
     /// The same problem at another accuracy.
@@ -371,7 +377,7 @@ fn reported(
 ) -> Result<FitResult, Failure> {
     let (fit, covariance) = (&inferred.fit, &inferred.covariance);
     let all = problem.curves();
-    let alone = all.len() == 1 && fit.ending.converged();
+    let alone = all.len() == 1 && fit.ending.converged() && !inferred.is_closed_by_priors();
     let open = !inferred.identifiability.unidentifiable.is_empty() && alone;
     let curves = all.iter().map(|curve| curve.fit_curve(fit, covariance));
     let accuracies = all.iter().map(|curve| curve.accuracy_reached(&fit.point));

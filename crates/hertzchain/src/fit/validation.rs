@@ -16,13 +16,6 @@ pub(super) fn of_table(arguments: &Arguments) -> Result<(), Failure> {
     refuse("--channel", !recorded.channel.is_empty(), why)?;
     refuse("--low-pass", recorded.low_pass.is_some(), why)?;
     refuse("--filter", recorded.filter.is_some(), why)?;
-    refuse(
-        "--own",
-        !arguments.own.is_empty() && arguments.also.is_empty(),
-        "is for several tables (--also): leave it out",
-    )?;
-    let why = "compares models of one table, and --also names others: compare without";
-    refuse("--against", !(arguments.against.is_empty() || arguments.also.is_empty()), why)?;
     let why = "can't be combined with --against: models are compared by likelihoods, and a robust loss is none; \
                compare without --robust, or leave outliers out of the table";
     refuse("--robust", arguments.robust && !arguments.against.is_empty(), why)?;

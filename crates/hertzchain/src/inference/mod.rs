@@ -401,6 +401,14 @@ pub fn posed(pairs: &[(Data, Experiment)], options: &FitOptions) -> Result<Curve
     if freed.free.is_empty() {
         return Err(user("nothing is free: --free names numbers, such as eta,B"));
     }
+    if pairs.len() == 1 && !options.own.is_empty() {
+        return Err(user("--own is for several tables (--also): leave it out"));
+    }
+    if pairs.len() > 1 && !options.against.is_empty() {
+        return Err(user(
+            "--against compares models of one table, and there are several: leave it out",
+        ));
+    }
     let experiment = |(data, experiment): &(Data, Experiment)| {
         changed(in_case(experiment.clone(), &data.case)?, &modelled.set)
     };

@@ -189,7 +189,8 @@ pub fn same_number(one: (&Experiment, &str), other: (&Experiment, &str)) -> bool
     matches!((target(one), target(other)), (Ok(one), Ok(other)) if one == other)
 }
 
-/// Speeds in m/s with as many digits as distinguish them, four at the least.
+/// Speeds in m/s with as many digits as distinguish them, four at the least; one that comes again
+/// has a number behind it.
 fn apart(speeds_m_s: &[f64]) -> Vec<String> {
     let rounded = |digits: usize| -> Vec<String> {
         let short = |speed: &f64| {
@@ -198,12 +199,19 @@ fn apart(speeds_m_s: &[f64]) -> Vec<String> {
         };
         speeds_m_s.iter().map(short).collect()
     };
-    let distinct = |texts: &Vec<String>| {
-        let once: HashSet<&String> = texts.iter().collect();
-        once.len() == texts.len()
-    };
+    let different = speeds_m_s.iter().map(|speed| speed.to_bits()).collect::<HashSet<_>>().len();
+    let distinct = |texts: &Vec<String>| texts.iter().collect::<HashSet<_>>().len() == different;
     let mut all = (4..=MOST_DIGITS).map(rounded);
-    all.find(distinct).unwrap_or_else(|| rounded(MOST_DIGITS))
+    let texts = all.find(distinct).unwrap_or_else(|| rounded(MOST_DIGITS));
+    let named = |(at, text): (usize, &String)| match texts[..at]
+        .iter()
+        .filter(|before| *before == text)
+        .count()
+    {
+        0 => text.clone(),
+        before => format!("{text}({})", before + 1),
+    };
+    texts.iter().enumerate().map(named).collect()
 }
 
 /// Digits that distinguish any two numbers.

@@ -565,6 +565,9 @@ fn smoothest(rows: &[Row]) -> Vec<Chosen> {
     (0..rows.len()).map(chosen).collect()
 }
 
+/// Distance in ln speed by which two rows of one speed count as apart.
+const USUALLY_APART: f64 = 0.1;
+
 /// The way of least cost, and that (dynamic programming over neighbours); `None` of fewer than three
 /// rows, or where one has no solution.
 fn straightest(rows: &[Row]) -> Option<(f64, Vec<usize>)> {
@@ -573,7 +576,8 @@ fn straightest(rows: &[Row]) -> Option<(f64, Vec<usize>)> {
     }
     let slope = |row: usize, before: usize, at: usize| {
         let [(v0, from), (v1, to)] = [&rows[row - 1], &rows[row]];
-        (to[at] - from[before]) / (v1 - v0)
+        let apart = if v1 > v0 { v1 - v0 } else { USUALLY_APART };
+        (to[at] - from[before]) / apart
     };
     let numbers = |row: usize| 0..rows[row].1.len();
     let first = numbers(0).flat_map(|a| numbers(1).map(move |b| (0.0, vec![a, b])));

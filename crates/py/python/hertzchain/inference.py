@@ -32,6 +32,7 @@ def fit(
     model: Experiment | options.Path_ | None = None,
     *,
     free: str | Iterable[str],
+    also: Iterable[tuple[Any, Experiment | options.Path_]] = (),
     folder: options.Path_ | None = None,
     client: Client | None = None,
     points: int | None = None,
@@ -55,13 +56,16 @@ def fit(
     free : str or iterable of str
         Free numbers: short names (Y, nu, eta, K, A, B, of a material or section as in ``"wet.K"``)
         or paths; ``:power`` for a power law of speed, ``:each`` for one value a speed.
+    also : iterable of (data, model), optional
+        Further tables, each with its own model, fitted together with ``data``: free numbers have one
+        value in all models that know them, but for those that ``own`` names.
     folder : path, optional
         Where residuals so far and a posterior's walkers are kept. The same call with the same folder
         resumes an interrupted one, and returns the same bits; walkers stay there, to
         continue with more ``steps``.
     client : dask.distributed.Client, optional
         Computes the curves of a table's model on a cluster, all of them (``direct``), with the same
-        bits; ``folder`` is seen by all workers under this name. ``against`` is not available.
+        bits; ``folder`` is seen by all workers under this name. ``against`` and ``also`` are not available.
     points : int, optional
         Most points of a batch of a cluster; smaller ones where not every thread would have one.
     **options
@@ -91,6 +95,9 @@ def fit(
     options.count("points", points, 1)
     described = any(how.get(name) not in (None, ()) for name in ("shots", "rate", "channel"))
     files = _recordings(data, described)
+    others = [(table(other), opened(chain)) for other, chain in also]
+    if others and (client is not None or files is not None):
+        raise OptionError("also fits several tables together in this process: leave it out of fits of recordings and on a cluster")
     with options.progress(progress, None, "curve") as update:
         if client is not None:
             from .distributed import fit_on
@@ -99,8 +106,9 @@ def fit(
             asked = options.text("fit", how, data=[own[0]], **resumed(folder))
             found = fit_on(client, _native.Likelihood(own, modelled(model), asked), folder, points, update)
         elif files is None:
-            own = table(data)
-            found = _native.fit(own, modelled(model), options.text("fit", how, data=[own[0]], **resumed(folder)), update)
+            pairs = [(table(data), modelled(model)), *others]
+            asked = options.text("fit", how, data=[pairs[0][0][0]], **resumed(folder))
+            found = _native.fit(pairs, asked, update)
         else:
             found = _native.fit_pulses(modelled(model), options.text("fit", how, data=files, **resumed(folder)), update)
         return fit_result({**found, "assumed_model": assumed(model=(model, "dry"))})

@@ -11,7 +11,7 @@ use crate::program::words::{
     chi_square_text, doubt, estimate, lines, misfit, p_value, percent, rough,
 };
 use hertzchain_infer::{
-    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Profile, Runs, Started,
+    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Prior, Profile, Runs, Started,
 };
 
 /// The solver's error may be this share of the least standard error.
@@ -147,7 +147,11 @@ pub(super) fn values(fit_result: &Inferred) -> String {
     let row = |(at, parameter): (usize, &Parameter)| {
         let (value, sd) = (fit_result.fit.point[at], fit_result.standard_error(at));
         let limit = fit_result.limit(at).map(limit).unwrap_or_default();
-        (parameter.name.clone(), estimate(parameter, value, sd) + &limit)
+        let prior = match parameter.prior {
+            Prior::Normal { mean, sd } => format!(", prior {}", estimate(parameter, mean, sd)),
+            _ => String::new(),
+        };
+        (parameter.name.clone(), estimate(parameter, value, sd) + &limit + &prior)
     };
     format::pairs(&parameters.map(row).collect::<Vec<_>>())
 }
@@ -254,6 +258,9 @@ pub(super) fn determined(fit_result: &Inferred, advice: &dyn Fn() -> Vec<String>
     }
     let mut text =
         format!("\nThe data determine {known} of {all} combinations of the parameters.\n");
+    if fit_result.is_closed_by_priors() {
+        return text.replace(".\n", ", priors the others.\n");
+    }
     for confusion in &found.unidentifiable {
         text += &format!("  Not determined: {}.\n", confusion.words);
     }
