@@ -44,7 +44,7 @@ fn a_push_that_the_fit_advises_determines_what_one_table_leaves_open() {
         assert!(off.abs() < 0.1 * error && error < exact, "{both}");
         assert!(sd(&alone, at).is_none_or(|before| error < 0.5 * before), "{alone}");
     }
-    assert_eq!(both["tables"][1]["model"], "pushed.toml");
+    assert_eq!(both["tables"][1]["model"], pushed.as_str());
     for name in ["fit.png", "fit-2.png"] {
         assert!(out.join(name).exists(), "{name}");
     }

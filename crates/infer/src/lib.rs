@@ -23,8 +23,8 @@ pub use self::{
     compare::{Compared, Comparison, Criteria, CrossValidation, Folding, compare, cross_validate},
     covariance::Covariance,
     curve::{
-        Advice, Choices, Curve, CurveProblem, ExpectedErrors, FitCurve, Kind, Model, Predicted,
-        Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
+        Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Kind, MeasuredCurve, Model,
+        Predicted, Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
     },
     data::{
         Data, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, widening,

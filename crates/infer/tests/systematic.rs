@@ -119,14 +119,13 @@ fn a_systematic_error_that_the_data_know_nothing_of_keeps_its_prior() {
 #[test]
 fn the_gauge_names_the_oil_through_a_delay_that_it_is_told_of() {
     let (dry, wet) = (preset("dry").unwrap(), preset("motor").unwrap());
-    let measured =
-        |row: &Experiment, seed, delay| later(Truth::of(row, &speeds_m_s(8)).measured(seed), delay);
+    let measured = |row: &Experiment, delay| later(exact(&Truth::of(row, &speeds_m_s(8))), delay);
     let free = ["aisi316.eta", "dry.B"].map(str::to_owned);
     // The trigger was moved between both curves.
     let verdict = |systematic: &[(String, f64)], delay| {
         let chains =
             Chains { dry: &dry, wet: &wet, free: &free, own: &[], systematic, accuracy: 1e-5 };
-        let gauge = Gauge::new(&chains, measured(&dry, 1, delay), measured(&wet, 2, delay));
+        let gauge = Gauge::new(&chains, measured(&dry, delay), measured(&wet, delay));
         gauge.unwrap().verdict(&known_oils().unwrap()).unwrap().sentence()
     };
     assert!(verdict(&[], 3e-6).starts_with("None of these"));

@@ -23,9 +23,9 @@ use crate::inference::{self, user, wanted};
 use crate::options::FitOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
-    Advice, Covariance, Curve, CurveProblem, Data, Fit, FitCurve, Fitting, FreeNumber, Goodness,
-    Identifiability, Loss, Observable, Parameter, Prior, Problem, PulseProblem, Started,
-    fit as least_squares,
+    Advice, Covariance, CurveProblem, Data, Fit, FitCurve, Fitting, FreeNumber, Goodness,
+    Identifiability, Loss, MeasuredCurve, Observable, Parameter, Prior, Problem, PulseProblem,
+    Started, fit as least_squares,
 };
 
 /// Residuals beyond so many standard errors count by their size when outliers are expected.
@@ -75,9 +75,9 @@ pub struct FitResult {
 }
 
 /// A table of a fit and what the fit makes of it.
-pub struct FittedTable<'a> {
+pub struct TableFit<'a> {
     /// The data and their model.
-    pub curve: &'a Curve,
+    pub curve: &'a MeasuredCurve,
     /// The model at the best fit.
     pub fit_curve: &'a FitCurve,
     /// Place of its first residual.
@@ -86,7 +86,7 @@ pub struct FittedTable<'a> {
     pub residuals: &'a [f64],
 }
 
-impl FittedTable<'_> {
+impl TableFit<'_> {
     /// Sum of its squared residuals.
     pub fn chi_square(&self) -> f64 {
         self.residuals.iter().map(|r| r * r).sum()
@@ -125,12 +125,12 @@ impl Inferred {
 
 impl FitResult {
     /// The tables, in the order of the pairs that were fitted.
-    pub fn tables<'a>(&'a self) -> Vec<FittedTable<'a>> {
+    pub fn tables<'a>(&'a self) -> Vec<TableFit<'a>> {
         let mut end = 0;
-        let table = |(curve, fit_curve): (&'a Curve, &'a FitCurve)| {
+        let table = |(curve, fit_curve): (&'a MeasuredCurve, &'a FitCurve)| {
             let first = end;
             end += curve.data().value_count();
-            FittedTable {
+            TableFit {
                 residuals: &self.inferred.fit.residuals[first..end],
                 curve,
                 fit_curve,
@@ -383,8 +383,9 @@ fn reported(
     let accuracies = all.iter().map(|curve| curve.accuracy_reached(&fit.point));
     let accuracies = accuracies.collect::<Result<Vec<f64>, _>>().map_err(user)?;
     let start: Vec<f64> = inferred.parameters.iter().map(|p| p.start).collect();
-    let unit =
-        |curve: &Curve| Some((curve.data().file.clone(), curve.other_unit_of_speed(&start)?));
+    let unit = |curve: &MeasuredCurve| {
+        Some((curve.data().file.clone(), curve.other_unit_of_speed(&start)?))
+    };
     let rejected = inferred.goodness.is_rejected();
     Ok(FitResult {
         unit_of_speed: rejected.then(|| all.iter().find_map(unit)).flatten(),

@@ -2,7 +2,7 @@
 
 use super::alternatives::{AlternativeModel, AlternativeModels};
 use super::more::{Curves, More};
-use super::{FitResult, FittedTable, Inferred, Limit};
+use super::{FitResult, Inferred, Limit, TableFit};
 use crate::inference::{assumed, held_loads, references_json, unit_changes, widened};
 use crate::options::FitOptions as Arguments;
 use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
@@ -39,7 +39,7 @@ pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
 }
 
 /// A table of several that were fitted together.
-fn table(of: &FittedTable<'_>) -> Value {
+fn table(of: &TableFit<'_>) -> Value {
     let (data, model) = (of.curve.data(), of.curve.model());
     json!({
         "file": data.file,
@@ -269,7 +269,7 @@ pub fn rows_json(fit_result: &FitResult) -> Value {
     tables.iter().flat_map(|table| rows_of(table, tables.len() > 1)).collect()
 }
 
-fn rows_of(table: &FittedTable<'_>, with_file: bool) -> Vec<Value> {
+fn rows_of(table: &TableFit<'_>, with_file: bool) -> Vec<Value> {
     let data = table.curve.data();
     let one = |((at, of), residual): ((usize, Observable), &f64)| {
         let row = &data.rows[at];

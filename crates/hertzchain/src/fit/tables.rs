@@ -2,7 +2,7 @@
 
 use super::alternatives::AlternativeModels;
 use super::more::{More, Sampled};
-use super::{FitResult, FittedTable, Inferred};
+use super::{FitResult, Inferred, TableFit};
 use crate::csv::{Cell, Csv, square};
 use hertzchain_infer::{
     Comparison, Diagnosis, End, Interval, Observable, Parameter, Posterior, Profile, titled,
@@ -255,7 +255,7 @@ fn rows(fit_result: &FitResult) -> String {
         let measured = table.curve.measured().zip(table.residuals);
         measured.map(move |line| (table, line))
     });
-    let line = |(table, ((at, of), residual)): (&FittedTable<'_>, ((usize, Observable), &f64))| {
+    let line = |(table, ((at, of), residual)): (&TableFit<'_>, ((usize, Observable), &f64))| {
         let data = table.curve.data();
         let row = &data.rows[at];
         let (value, curve) = (row.value(of), table.fit_curve);

@@ -5,7 +5,7 @@ use super::candidates::{ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, expected, pu
 use super::contacts::three_for_two;
 use super::joint::CurveProblem;
 use super::model::Model;
-use super::problem::Curve;
+use super::problem::MeasuredCurve;
 use crate::data::{Data, Observable};
 use crate::free::Form;
 use crate::identify::{Determined, Scaled, sized};
@@ -238,7 +238,8 @@ impl CurveProblem {
         let flat = |of: Parameter| of.with_prior(Prior::Flat);
         let sized = sized(self.parameters(), &fit.point).into_iter();
         let parameters: Vec<Parameter> = sized.map(flat).collect();
-        let problem = Self::unchecked(parameters, vec![Curve::new(model.for_slopes(), data)]);
+        let problem =
+            Self::unchecked(parameters, vec![MeasuredCurve::new(model.for_slopes(), data)]);
         let jacobian = jacobian_at(&problem, fit)?;
         Ok(Scaled::with_doubt(problem.parameters(), &jacobian, JUMPING))
     }

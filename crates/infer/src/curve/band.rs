@@ -1,7 +1,7 @@
 //! A fitted curve and how sure it is.
 
 use super::model::Predicted;
-use super::problem::Curve;
+use super::problem::MeasuredCurve;
 use crate::problem::ModelError;
 use crate::{Covariance, Fit};
 
@@ -14,7 +14,7 @@ pub struct FitCurve {
     pub sd: Vec<[f64; 4]>,
 }
 
-impl Curve {
+impl MeasuredCurve {
     /// The curve at a fit's optimum with its standard errors, from central
     /// differences by the fit's own steps, all in one ensemble and ten times as
     /// accurate as the fit, so that no jump of the solver's stands out of the band.

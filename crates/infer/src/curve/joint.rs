@@ -2,7 +2,7 @@
 
 use super::contacts::three_for_two;
 use super::model::{Model, Predicted, Speeds};
-use super::problem::Curve;
+use super::problem::MeasuredCurve;
 use crate::data::{Data, Observable};
 use crate::problem::{ModelError, Problem, Residuals, Response};
 use crate::{InferError, Parameter, Prior};
@@ -22,7 +22,7 @@ pub enum Supply {
 #[derive(Clone, Debug)]
 pub struct CurveProblem {
     parameters: Vec<Parameter>,
-    curves: Vec<Curve>,
+    curves: Vec<MeasuredCurve>,
 }
 
 impl CurveProblem {
@@ -32,7 +32,7 @@ impl CurveProblem {
     /// # Errors
     /// No parameter, one that cannot be free, or fewer numbers than unknowns.
     pub fn new(model: Model, data: Data, parameters: Vec<Parameter>) -> Result<Self, InferError> {
-        Self::unchecked(parameters, vec![Curve::new(model, data)]).checked()
+        Self::unchecked(parameters, vec![MeasuredCurve::new(model, data)]).checked()
     }
 
     /// Models against data, whose parameters are the same where they have the same name; those of
@@ -62,14 +62,14 @@ impl CurveProblem {
                 })
             });
             let supplies = supplies.map(&mut supply).collect();
-            Curve::new(model, data).supplied(supplies)
+            MeasuredCurve::new(model, data).supplied(supplies)
         };
         let curves = curves.into_iter().enumerate().map(curve).collect();
         Self::unchecked(all, curves)
     }
 
     /// Curves that share parameters, whatever these are.
-    pub(crate) fn unchecked(parameters: Vec<Parameter>, curves: Vec<Curve>) -> Self {
+    pub(crate) fn unchecked(parameters: Vec<Parameter>, curves: Vec<MeasuredCurve>) -> Self {
         Self { parameters, curves }
     }
 
@@ -109,7 +109,7 @@ impl CurveProblem {
     }
 
     /// The curves, at least one.
-    pub fn curves(&self) -> &[Curve] {
+    pub fn curves(&self) -> &[MeasuredCurve] {
         &self.curves
     }
 
@@ -127,7 +127,7 @@ impl CurveProblem {
     /// understood, their free numbers, the data, accuracy and instruction set, this
     /// build of the program; not where the data lie.
     pub fn fingerprint(&self) -> Fingerprint {
-        let of = |curve: &Curve| curve.fingerprint(&self.parameters);
+        let of = |curve: &MeasuredCurve| curve.fingerprint(&self.parameters);
         match &self.curves[..] {
             [only] => of(only),
             all => {
@@ -195,7 +195,7 @@ impl CurveProblem {
     fn parts<'a>(
         &'a self,
         mut predicted: &'a [Predicted],
-    ) -> impl Iterator<Item = (&'a Curve, &'a [Predicted])> {
+    ) -> impl Iterator<Item = (&'a MeasuredCurve, &'a [Predicted])> {
         self.curves.iter().map(move |curve| {
             let (own, rest) = predicted.split_at(curve.speeds().at.len().min(predicted.len()));
             predicted = rest;
@@ -213,7 +213,7 @@ impl CurveProblem {
     /// Which curve, row and observable each residual belongs to.
     pub fn measured(&self) -> Vec<(usize, usize, Observable)> {
         let all = self.curves.iter().enumerate();
-        let own = |(at, curve): (usize, &Curve)| -> Vec<(usize, usize, Observable)> {
+        let own = |(at, curve): (usize, &MeasuredCurve)| -> Vec<(usize, usize, Observable)> {
             curve.measured().map(|(row, of)| (at, row, of)).collect()
         };
         all.flat_map(own).collect()
@@ -254,7 +254,7 @@ impl Problem for CurveProblem {
     }
 
     fn residual_label(&self, index: usize) -> String {
-        let named = |curve: &Curve, label: &String| match self.curves.len() {
+        let named = |curve: &MeasuredCurve, label: &String| match self.curves.len() {
             1 => label.clone(),
             _ => format!("{}, {label}", curve.data().file),
         };

@@ -21,7 +21,7 @@ pub use self::{
 };
 pub use self::{
     model::{Model, Predicted, Speeds},
-    problem::Curve,
+    problem::MeasuredCurve,
     surrogate::Surrogate,
 };
 pub(crate) use model::Shooting;

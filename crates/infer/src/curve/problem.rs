@@ -20,7 +20,7 @@ const ASIDE: f64 = 0.02;
 /// errors of the speed move all that was measured at it together, by the
 /// slope of the model's own curve.
 #[derive(Clone, Debug)]
-pub struct Curve {
+pub struct MeasuredCurve {
     model: Model,
     data: Data,
     /// Where each of the model's parameters comes from.
@@ -30,7 +30,7 @@ pub struct Curve {
     labels: Vec<String>,
 }
 
-impl Curve {
+impl MeasuredCurve {
     /// Data and a model whose parameters are the problem's first, in their order.
     pub fn new(model: Model, data: Data) -> Self {
         let count = model.numbers().parameters(&data.speeds_m_s()).len();

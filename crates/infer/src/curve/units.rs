@@ -1,7 +1,7 @@
 //! Whether speeds are in another unit than m/s, by what times of flight they make.
 
 use super::model::Speeds;
-use super::problem::Curve;
+use super::problem::MeasuredCurve;
 use crate::data::Observable;
 
 /// A smaller unit of speed, and how many make 1 m/s.
@@ -12,7 +12,7 @@ const SMALLER: [(&str, f64); 2] = [("cm/s", 100.0), ("mm/s", 1000.0)];
 /// the speed by about its fifth root.
 const NEAR: f64 = 0.2;
 
-impl Curve {
+impl MeasuredCurve {
     /// The unit that speeds seem to be in, if it is not m/s: the model, where its parameters
     /// start, has the measured times of flight at speeds that many times slower, and not at
     /// those that stand in the table.

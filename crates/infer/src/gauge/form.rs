@@ -5,7 +5,7 @@
 
 use super::rows::{SAME, TIMES_DRY, shifts};
 use super::{Gauge, LEAST_PROBABILITY, Match, NuisanceParameter, Oil, Verdict};
-use crate::curve::{Curve, CurveProblem, Supply};
+use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::Data;
 use crate::{Covariance, Fit, Fitting, Goodness, Identifiability, InferError};
 use crate::{Parameter, Problem, fit};
@@ -143,7 +143,7 @@ impl Gauge {
     }
 
     /// Fits of the wet curve with the dry contacts' numbers fixed, best first, at least one.
-    fn law_minima(&self, wet: &Curve) -> Result<Vec<Fit>, InferError> {
+    fn law_minima(&self, wet: &MeasuredCurve) -> Result<Vec<Fit>, InferError> {
         let [stiffness, relaxation] = self.dry_contact;
         let dry = &self.dry_fit.point[..self.common()];
         let own = self.wet_own(&self.data.speeds_m_s());
@@ -169,7 +169,7 @@ impl Gauge {
 
     /// Both curves: the dry curve's parameters, the wet chain's nuisance parameters and both laws,
     /// which start at these values.
-    fn both_curves(&self, dry: Curve, wet: Curve, start: &[f64]) -> CurveProblem {
+    fn both_curves(&self, dry: MeasuredCurve, wet: MeasuredCurve, start: &[f64]) -> CurveProblem {
         let count = self.dry_fit.point.len();
         let own = self.wet_own(&wet.data().speeds_m_s());
         let laws = &self.laws(&wet);
@@ -184,7 +184,7 @@ impl Gauge {
     }
 
     /// Parameters of both laws, the last of the wet model's.
-    fn laws(&self, wet: &Curve) -> Vec<Parameter> {
+    fn laws(&self, wet: &MeasuredCurve) -> Vec<Parameter> {
         let all = wet.model().numbers().parameters(&wet.data().speeds_m_s());
         all[all.len() - LAWS..].to_vec()
     }
@@ -248,7 +248,7 @@ impl Gauge {
         &self,
         form: &PowerForm,
         oil: &Oil,
-        (each, power): (&Curve, &Curve),
+        (each, power): (&MeasuredCurve, &MeasuredCurve),
     ) -> Result<PowerForm, InferError> {
         let (dry, own) = form.beside_laws.split_at(self.dry_fit.point.len());
         let [stiffness, relaxation] = self.contacts_of(oil);
@@ -319,7 +319,7 @@ fn distance(oil: &Oil, form: &PowerForm, expected: &PowerForm) -> Result<Match, 
 }
 
 /// A curve's data with the values that its model computes, and the measured ones' errors.
-fn computed(of: &Curve, point: &[f64]) -> Result<Data, InferError> {
+fn computed(of: &MeasuredCurve, point: &[f64]) -> Result<Data, InferError> {
     let curve = of.predicted(&[point.to_vec()]).remove(0)?;
     let mut data = of.data().clone();
     for (row, computed) in data.rows.iter_mut().zip(curve) {

@@ -16,7 +16,7 @@ pub use self::{
     scan::Scan,
 };
 
-use crate::curve::{Curve, CurveProblem, Model, Supply};
+use crate::curve::{CurveProblem, MeasuredCurve, Model, Supply};
 use crate::data::{Data, Observable};
 use crate::free::{FreeNumber, FreeNumbers};
 use crate::goodness::chi_square_of;
@@ -119,7 +119,7 @@ impl Gauge {
         &self.dry
     }
 
-    fn dry_curve(&self) -> Curve {
+    fn dry_curve(&self) -> MeasuredCurve {
         self.dry.curves()[0].clone()
     }
 
@@ -317,7 +317,7 @@ impl Gauge {
     }
 
     /// The wet curve with K and A that depend on speed as `power` or `each` says.
-    fn wet_in_form(&self, form: &str) -> Result<Curve, InferError> {
+    fn wet_in_form(&self, form: &str) -> Result<MeasuredCurve, InferError> {
         let experiment = self.wet.experiment();
         let own = self.wet.numbers().as_slice();
         let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();
@@ -327,7 +327,7 @@ impl Gauge {
         }
         let model = Model::new(experiment, FreeNumbers::new(numbers)?)?;
         let model = model.with_accuracy(self.wet.accuracy);
-        Ok(Curve::new(model, self.data.clone()))
+        Ok(MeasuredCurve::new(model, self.data.clone()))
     }
 
     /// K in N/m^{3/2} and A in s that an oil gives at the speeds of the wet data.
@@ -337,7 +337,7 @@ impl Gauge {
         [stiffness, relaxation]
     }
 
-    fn compare(&self, oil: &Oil, wet: &Curve) -> Result<Match, InferError> {
+    fn compare(&self, oil: &Oil, wet: &MeasuredCurve) -> Result<Match, InferError> {
         let count = self.dry_fit.point.len();
         let speeds = self.data.speeds_m_s();
         let [stiffness, relaxation] = self.contacts_of(oil);

@@ -1,7 +1,7 @@
 //! K and A of the wet contacts, speed by speed.
 
 use super::{CONTACT, Gauge, Scan};
-use crate::curve::{Curve, CurveProblem, Supply};
+use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::{Data, Observable};
 use crate::goodness::LEAST_BY_CHANCE;
 use crate::linear::{combine, dot, least_squares};
@@ -278,7 +278,7 @@ impl Gauge {
             Free::StiffnessAlone => Supply::Fixed(at[1]),
         });
         start.truncate(if free == Free::Both { 2 } else { 1 });
-        let curve = Curve::new(self.wet.clone(), data).supplied(supplies);
+        let curve = MeasuredCurve::new(self.wet.clone(), data).supplied(supplies);
         CurveProblem::unchecked(start, vec![curve])
     }
 

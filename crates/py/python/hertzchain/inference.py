@@ -51,14 +51,12 @@ def fit(
         masked, is missing. Or recordings of any format that `measure` reads, files or folders of
         them: then whole pulses are fitted, sample by sample.
     model : Experiment or str or path, optional
-        The model, the name of a preset, or a file. Where it is absent the paper's dry chain is assumed
-        (preset ``"dry"``), with a warning.
+        The model, the name of a preset, or a file; where absent, preset ``"dry"`` is assumed with a warning.
     free : str or iterable of str
         Free numbers: short names (Y, nu, eta, K, A, B, of a material or section as in ``"wet.K"``)
         or paths; ``:power`` for a power law of speed, ``:each`` for one value a speed.
     also : iterable of (data, model), optional
-        Further tables, each with its own model, fitted together with ``data``: free numbers have one
-        value in all models that know them, but for those that ``own`` names.
+        Further tables with their models, fitted together with ``data``; see docs/how-to/several-tables.md.
     folder : path, optional
         Where residuals so far and a posterior's walkers are kept. The same call with the same folder
         resumes an interrupted one, and returns the same bits; walkers stay there, to
@@ -97,18 +95,15 @@ def fit(
     files = _recordings(data, described)
     others = [(table(other), opened(chain)) for other, chain in also]
     if others and (client is not None or files is not None):
-        raise OptionError("also fits several tables together in this process: leave it out of fits of recordings and on a cluster")
+        raise OptionError("also fits several tables in this process: leave it out of fits of recordings and on a cluster")
     with options.progress(progress, None, "curve") as update:
         if client is not None:
             from .distributed import fit_on
 
-            own = table(data)
-            asked = options.text("fit", how, data=[own[0]], **resumed(folder))
-            found = fit_on(client, _native.Likelihood(own, modelled(model), asked), folder, points, update)
+            asked = options.text("fit", how, **resumed(folder))
+            found = fit_on(client, _native.Likelihood(table(data), modelled(model), asked), folder, points, update)
         elif files is None:
-            pairs = [(table(data), modelled(model)), *others]
-            asked = options.text("fit", how, data=[pairs[0][0][0]], **resumed(folder))
-            found = _native.fit(pairs, asked, update)
+            found = _native.fit([(table(data), modelled(model)), *others], options.text("fit", how, **resumed(folder)), update)
         else:
             found = _native.fit_pulses(modelled(model), options.text("fit", how, data=files, **resumed(folder)), update)
         return fit_result({**found, "assumed_model": assumed(model=(model, "dry"))})
@@ -164,8 +159,7 @@ def design(
     own = table(data)
     with options.progress(progress, None, "curve") as update:
         found = _native.design(own, modelled(model), options.text("design", how, free=_named(free), data=own[0]), update)
-    found["assumed_model"] = assumed(model=(model, "dry"))
-    return DesignResult(found | {"parameter_units": found["units"]})
+    return DesignResult(found | {"assumed_model": assumed(model=(model, "dry")), "parameter_units": found["units"]})
 
 
 @options.with_options("gauge", "curves of the model")
@@ -215,8 +209,7 @@ def gauge(
     more = None if oils is None else table(oils)
     with options.progress(progress, None, "curve") as update:
         found = _native.gauge(tables, (modelled(model or "pump"), modelled(dry_model or "dry")), more, asked, update)
-    found["assumed_model"] = assumed(model=(model, "pump"), dry_model=(dry_model, "dry"))
-    return GaugeResult(found)
+    return GaugeResult(found | {"assumed_model": assumed(model=(model, "pump"), dry_model=(dry_model, "dry"))})
 
 
 def _named(free: str | Iterable[str]) -> list[str]:
@@ -307,7 +300,5 @@ def assumed(**models: tuple[object, str]) -> str | None:
 
 def resumed(folder: options.Path_ | None) -> dict[str, Any]:
     """Options for a folder in which an interrupted fit resumes."""
-    if folder is None:
-        return {}
-    into = Path(folder).resolve()
-    return {"out": into, "resume": (into / "chain.json").exists()}
+    into = Path(folder or ".").resolve()
+    return {} if folder is None else {"out": into, "resume": (into / "chain.json").exists()}

@@ -1,7 +1,7 @@
 //! Figures of a fit.
 
 use super::report::short;
-use crate::fit::{FittedTable, Inferred};
+use crate::fit::{Inferred, TableFit};
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_infer::Observable;
 
@@ -17,7 +17,7 @@ const LOOKS: [(Colour, Marker); 4] = [
 const BAND: f64 = 1.96;
 
 /// Data with the fit and its band; residuals below.
-pub(super) fn fit(table: &FittedTable<'_>, inferred: &Inferred) -> Figure {
+pub(super) fn fit(table: &TableFit<'_>, inferred: &Inferred) -> Figure {
     let data = table.curve.data();
     let mut figure = Figure::single_column(130.0).share_x();
     for times in [true, false] {
@@ -36,7 +36,7 @@ fn scale(of: Observable) -> f64 {
     if of.is_time() { 1e6 } else { 1.0 }
 }
 
-fn curves(table: &FittedTable<'_>, shown: &[Observable]) -> Chart {
+fn curves(table: &TableFit<'_>, shown: &[Observable]) -> Chart {
     let times = shown.iter().any(|of| of.is_time());
     let label = if times { "Time of flight (µs)" } else { "Ratio of peaks" };
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
@@ -50,7 +50,7 @@ fn curves(table: &FittedTable<'_>, shown: &[Observable]) -> Chart {
 }
 
 /// Measured points, the fitted line and its 95 % band.
-fn with_curve(table: &FittedTable<'_>, chart: Chart, of: Observable, line: &str) -> Chart {
+fn with_curve(table: &TableFit<'_>, chart: Chart, of: Observable, line: &str) -> Chart {
     let rows = table.curve.data().rows.iter().enumerate();
     let rows: Vec<_> = rows.filter_map(|(at, row)| Some((at, row, row.value(of)?))).collect();
     let unit = scale(of);
@@ -75,7 +75,7 @@ fn with_curve(table: &FittedTable<'_>, chart: Chart, of: Observable, line: &str)
 
 /// Standardised residuals against speed, with the band that the parameters' errors
 /// leave the fit, in the same standard errors.
-fn residuals(table: &FittedTable<'_>, inferred: &Inferred) -> Chart {
+fn residuals(table: &TableFit<'_>, inferred: &Inferred) -> Chart {
     let data = table.curve.data();
     let label = "Residual (standard errors)";
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log().h_line(0.0, "");
@@ -115,7 +115,7 @@ fn residuals(table: &FittedTable<'_>, inferred: &Inferred) -> Chart {
 const LEGEND_ABOVE: f64 = 1.8;
 
 /// Standard errors of the fitted curve in those of each residual.
-fn spreads(table: &FittedTable<'_>, Inferred { fit, covariance, .. }: &Inferred) -> Vec<f64> {
+fn spreads(table: &TableFit<'_>, Inferred { fit, covariance, .. }: &Inferred) -> Vec<f64> {
     let slopes = |at: usize| {
         let columns = fit.jacobian.columns.iter();
         columns.map(move |column| column.get(at).copied().unwrap_or(f64::NAN))

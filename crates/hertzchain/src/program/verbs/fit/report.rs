@@ -1,8 +1,6 @@
 //! A fit for people.
 
-use crate::fit::{
-    AlternativeModels, Curves, FitResult, FittedTable, Inferred, Limit, More, Sampled,
-};
+use crate::fit::{AlternativeModels, Curves, FitResult, Inferred, Limit, More, Sampled, TableFit};
 use crate::inference::{references, widened};
 use crate::options::FitOptions as Arguments;
 use crate::program::format::{self, digits};
@@ -40,7 +38,7 @@ pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
 }
 
 /// A table and its model; of several, its share of χ² too.
-fn title(table: &FittedTable<'_>, of_several: bool) -> String {
+fn title(table: &TableFit<'_>, of_several: bool) -> String {
     let data = table.curve.data();
     let case = match data.case.as_str() {
         "" => String::new(),
