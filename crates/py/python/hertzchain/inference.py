@@ -115,7 +115,7 @@ def fit_result(found: dict[str, Any]) -> FitResult:
         if (text := found.get(key)) is not None:
             warnings.warn(in_python(text), ExperimentWarning, stacklevel=3)
     rows, samples = found.pop("rows"), found.pop("samples", None)
-    texts = ("observable", "source", "channel")
+    texts = ("observable", "source", "channel", "file")
     return FitResult(
         parameters={raw["name"]: Parameter(raw) for raw in found["parameters"]},
         covariance=np.array(found["covariance"], dtype=float),
