@@ -2,11 +2,11 @@
 
 use crate::csv::{Cell, Csv};
 use crate::failure::Failure;
-use crate::inference::{self, references_json, user};
+use crate::inference::{self, is_meant, references_json, user};
 use crate::options::{DesignOptions as Arguments, Preload, WayKind};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
-    Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fitting,
+    Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fit, Fitting,
     Goodness, Identifiability, Kind, Problem, fit, titled, ways, wrong_speed,
 };
 use hertzchain_sim::parse_speeds;
@@ -146,6 +146,7 @@ pub fn run_design(
     arguments: &Arguments,
 ) -> Result<DesignResult, Failure> {
     let fit = fit(problem, &Fitting::default()).map_err(user)?;
+    let problem = &sized_by(problem.clone(), &fit, arguments)?;
     let ways = ways(problem.model().experiment(), &choices(arguments)).map_err(user)?;
     let errors = ExpectedErrors::like(problem.data());
     let candidates = problem.candidates(&fit, &ways, speeds, &errors).map_err(user)?;
@@ -170,6 +171,23 @@ pub fn run_design(
         units,
         undetermined: open.map(|confusion| confusion.words).collect(),
     })
+}
+
+/// The problem with parameters as large as the fit has them where a start was asked for, which may be
+/// far from that.
+fn sized_by(
+    problem: CurveProblem,
+    fit: &Fit,
+    arguments: &Arguments,
+) -> Result<CurveProblem, Failure> {
+    let mut parameters = problem.parameters().to_vec();
+    for (parameter, value) in parameters.iter_mut().zip(&fit.point) {
+        let mut starts = arguments.freed.start.iter();
+        if *value != 0.0 && starts.any(|start| is_meant(&start.name, &parameter.name)) {
+            parameter.scale = value.abs();
+        }
+    }
+    problem.with_parameters(parameters).map_err(user)
 }
 
 /// What an aim, the `at`th, is called, and its unit.

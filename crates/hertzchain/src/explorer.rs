@@ -137,7 +137,7 @@ fn fit_of(text: &str, table: &str, options: &Value) -> Result<Value, Failure> {
         .iter()
         .map(|number| json!({ "name": number.name(), "path": number.path() }))
         .collect();
-    let residuals = found.curve.predicted.iter().zip(&data.rows).map(|(predicted, row)| {
+    let residuals = found.curves[0].predicted.iter().zip(&data.rows).map(|(predicted, row)| {
         // Predictions stand in the order of the observables.
         let [there, back, ..] = *predicted;
         let of = |what, predicted: Option<f64>| {

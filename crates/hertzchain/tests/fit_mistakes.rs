@@ -27,7 +27,6 @@ fn speeds_without_errors_are_warned_of_by_line() {
 fn data_that_can_not_be_fitted_are_told_by_row_and_column() {
     let folder = folder("data");
     for (number, (rows, words)) in [
-        ("0.5,0,7.6e-4,1e-7\n0.5,0,7.6e-4,1e-7\n", "stands in line 2 too"),
         ("-0.5,0,7.6e-4,1e-7\n", "line 2, speed_m_s"),
         ("0.5,0,7.6e-4,0\n", "line 2, tof_incident_s_error"),
         ("0.5,0,7.6e-4,\n", "no uncertainty"),

@@ -2,7 +2,8 @@
 //!
 //! ```sh
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50        # data sets, of them by posterior
-//! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet    # one case: dry, rk4, contacts, wet, bent, scatter, widened
+//! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet    # one case by its name
+//! cargo run --release -p hertzchain-infer --example coverage -- 500 50 delay  # and so: delay, unaware, joint, joint-delay
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet 501    # other data sets: seeds from 501
 //! ```
 //!
@@ -10,18 +11,24 @@
 //! they are fitted, once by Runge–Kutta of order 4 with a fixed step, and measured at the paper's noise:
 //! 20 shots a speed, speeds ±0.003 m/s; that of `bent` at so much more noise that the
 //! three kinds of intervals differ; those of `scatter` and `widened` have standard errors
-//! from the scatter of their own twenty shots, as they are or widened. Fits use a surrogate of the model, whose error
+//! from the scatter of their own twenty shots, as they are or widened; in those of `delay` incident times
+//! are late by a normal number of 0.2 µs, new in each set, which is a nuisance parameter or (`unaware`) not;
+//! those of `joint` have a second table, of a sensor in bead 20. Fits use a surrogate of the model, whose error
 //! is printed in standard errors.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use common::{Noise, TRUTH, Truth, model, problem, speeds_between, speeds_m_s};
-use hertzchain_experiment::preset;
+use common::{Noise, TRUTH, Truth, speeds_between, speeds_m_s};
+use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::{
-    Chain, Covariance, Data, Fit, Fitting, InferError, Observable, Predicted, Problem, Profiling,
-    Requirements, Sampling, Surrogate, fit, profile,
+    Chain, Covariance, CurveProblem, Data, Fit, Fitting, FreeNumber, FreeNumbers, InferError,
+    Model, Observable, Predicted, Problem, Profiling, Requirements, Sampling, Surrogate, fit,
+    profile,
 };
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::error::Error;
@@ -38,6 +45,10 @@ struct Case {
     /// Whether Runge–Kutta makes the curve.
     by_rk4: bool,
     measured: Measured,
+    /// Whether incident times are late, and whether that is a nuisance parameter.
+    is_late: [bool; 2],
+    /// Whether there is a second table, of a sensor in another bead.
+    is_joint: bool,
 }
 
 /// How a curve is measured.
@@ -83,9 +94,17 @@ const DRY: Case = Case {
     set: [("aisi316.shear_viscosity", 3.2e4), ("aisi316.bulk_viscosity", 3.2e4)],
     by_rk4: false,
     measured: Measured::Well,
+    is_late: [false, false],
+    is_joint: false,
 };
 
-const CASES: [Case; 7] = [
+/// Standard deviation of the delay of incident times in s.
+const DELAY_S: f64 = 0.2e-6;
+
+/// The sensor's bead in the second table.
+const OTHER_BEAD: f64 = 20.0;
+
+const CASES: [Case; 11] = [
     DRY,
     Case { name: "rk4", by_rk4: true, ..DRY },
     Case {
@@ -97,8 +116,7 @@ const CASES: [Case; 7] = [
             ("contacts[0].laws.elastic_hertz.stiffness", STIFFNESS),
             ("contacts[0].laws.damping_viscoelastic.relaxation_time", RELAXATION_S),
         ],
-        by_rk4: false,
-        measured: Measured::Well,
+        ..DRY
     },
     Case {
         name: "wet",
@@ -109,9 +127,12 @@ const CASES: [Case; 7] = [
             ("contacts[1].laws.elastic_hertz.stiffness", 9e9),
             ("contacts[1].laws.damping_viscoelastic.relaxation_time", 8e-7),
         ],
-        by_rk4: false,
-        measured: Measured::Well,
+        ..DRY
     },
+    Case { name: "delay", is_late: [true, true], ..DRY },
+    Case { name: "unaware", is_late: [true, false], ..DRY },
+    Case { name: "joint", is_joint: true, ..DRY },
+    Case { name: "joint-delay", is_joint: true, is_late: [true, true], ..DRY },
     Case { name: "bent", measured: Measured::Poorly, ..DRY },
     Case { name: "scatter", measured: Measured::ByShots(false), ..DRY },
     Case { name: "widened", measured: Measured::ByShots(true), ..DRY },
@@ -143,10 +164,15 @@ struct Said {
 }
 
 fn study(case: &Case, seeds: Range<usize>, sampled: usize) -> Result<(), Box<dyn Error>> {
-    let truth = truth(case)?;
-    let model = model(&preset(case.preset)?, &case.free);
-    let data = |seed: usize| case.measured.data(&truth, seed as u64);
-    let first = problem(&model, data(0));
+    let near = preset(case.preset)?;
+    let mut rows = vec![near.clone()];
+    if case.is_joint {
+        rows.push(near.set(&[("sensors.bead", OTHER_BEAD)])?);
+    }
+    let truths = rows.iter().map(|row| truth(case, row)).collect::<Result<Vec<_>, _>>()?;
+    let data = |seed: usize| repetition(case, &truths, seed as u64);
+    let models = rows.iter().map(|row| uncertain(case, row)).collect::<Result<Vec<_>, _>>()?;
+    let first = CurveProblem::of_curves(models.into_iter().zip(data(0)).collect(), &[]);
     let best = fit(&first, &Fitting::default())?;
     let around = Covariance::new(first.parameters(), &best);
     let surrogate = Surrogate::within(REACH, &first, &best, &around)?;
@@ -194,8 +220,8 @@ fn moments(values: &[f64]) -> String {
 const REACH: f64 = 10.0;
 
 /// The curve that is measured.
-fn truth(case: &Case) -> Result<Truth, Box<dyn Error>> {
-    let experiment = preset(case.preset)?.set(&case.set)?;
+fn truth(case: &Case, row: &Experiment) -> Result<Truth, Box<dyn Error>> {
+    let experiment = row.set(&case.set)?;
     let speeds_m_s = case.measured.speeds_m_s();
     let reached = Truth::accuracy_reached(&experiment, &speeds_m_s);
     if reached > TRUTH {
@@ -214,6 +240,31 @@ fn truth(case: &Case) -> Result<Truth, Box<dyn Error>> {
     }
     Ok(truth)
 }
+
+/// The model of a row.
+fn uncertain(case: &Case, row: &Experiment) -> Result<Model, Box<dyn Error>> {
+    let free = case.free.iter().map(|name| FreeNumber::find(row, name, None));
+    let known = case.is_late[1].then(|| FreeNumber::systematic(row, "delay", DELAY_S));
+    let numbers = FreeNumbers::new(free.chain(known).collect::<Result<_, _>>()?)?;
+    Ok(Model::new(row, numbers)?)
+}
+
+/// A simulated repetition of each table.
+fn repetition(case: &Case, truths: &[Truth], seed: u64) -> Vec<Data> {
+    let normal: f64 = StandardNormal.sample(&mut ChaCha8Rng::seed_from_u64(seed + LATE));
+    let late = if case.is_late[0] { normal * DELAY_S } else { 0.0 };
+    let table = |(at, truth): (u64, &Truth)| {
+        let mut data = case.measured.data(truth, seed + at * OTHER_TABLE);
+        let incident = data.rows.iter_mut().filter_map(|row| row.values[0].as_mut());
+        incident.for_each(|incident| incident.value += late);
+        data
+    };
+    (0..).zip(truths).map(table).collect()
+}
+
+/// What seeds of delays and of second tables are apart from those of the first.
+const LATE: u64 = 1_000_000;
+const OTHER_TABLE: u64 = 2_000_000;
 
 /// Shares in percent with their binomial errors; beside the wider intervals, how often
 /// the truth was below them and above.

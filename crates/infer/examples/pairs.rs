@@ -154,8 +154,14 @@ fn counted(
         false => case.wet.measured_with(noise, wet_seed),
     };
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains =
-        Chains { dry: dry_model, wet: &case.wet_model, free: &free, own: &[], accuracy: 1e-5 };
+    let chains = Chains {
+        dry: dry_model,
+        wet: &case.wet_model,
+        free: &free,
+        own: &[],
+        systematic: &[],
+        accuracy: 1e-5,
+    };
     let gauge = Gauge::new(&chains, dry.measured_with(noise, seed), wet);
     let gauge = gauge.map_err(|error| format!("seed {seed}: {error}"))?;
     let rows = gauge.rows();

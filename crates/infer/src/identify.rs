@@ -2,7 +2,7 @@
 
 use crate::least_squares::{EXTRAPOLATED, ROUNDING};
 use crate::linear::{Svd, combine, norm, svd};
-use crate::{Binding, Fit, Jacobian, Parameter};
+use crate::{Binding, Fit, Jacobian, Parameter, Prior};
 
 /// Singular values of the Jacobian of the data, each parameter in units of its size, which is its
 /// scale, or its value at the best fit where that is larger. Priors do not enter.
@@ -234,11 +234,11 @@ fn unidentifiable(
     UnidentifiableDirection { change, effect, standard_error, words }
 }
 
-/// What percents of a parameter are of: its value, or its size where that is 0.
+/// What percents of a parameter are of: its value, or its size where that is 0 or has a prior.
 fn whole(parameters: &[Parameter], fit: &Fit, k: usize) -> f64 {
     match fit.point[k].abs() {
-        0.0 => parameters[k].scale,
-        size => size,
+        size if size > 0.0 && parameters[k].prior == Prior::Flat => size,
+        size => parameters[k].scale.max(size),
     }
 }
 

@@ -23,7 +23,7 @@ pub use self::{
     compare::{Compared, Comparison, Criteria, CrossValidation, Folding, compare, cross_validate},
     covariance::Covariance,
     curve::{
-        Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Joint, Kind, Model, Part,
+        Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Kind, MeasuredCurve, Model,
         Predicted, Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
     },
     data::{

@@ -147,6 +147,6 @@ fn times_of_flight_tell_speeds_in_another_unit() {
             row.speed_m_s.sigma *= factor;
         }
         let problem = crate::common::problem(&model, data);
-        assert_eq!(problem.other_unit_of_speed(), unit);
+        assert_eq!(problem.curves()[0].other_unit_of_speed(&[3.2e4]), unit);
     }
 }

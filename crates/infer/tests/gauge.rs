@@ -11,7 +11,14 @@ const SPEEDS_M_S: [f64; 3] = [0.2, 0.5, 1.2];
 fn gauge(wet: Data, seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains { dry: &dry_model, wet: &wet_model, free: &free, own: &[], accuracy: 1e-5 };
+    let chains = Chains {
+        dry: &dry_model,
+        wet: &wet_model,
+        free: &free,
+        own: &[],
+        systematic: &[],
+        accuracy: 1e-5,
+    };
     let dry = Truth::of(&dry_model, &SPEEDS_M_S).measured(seed);
     Gauge::new(&chains, dry, wet).unwrap()
 }
@@ -81,7 +88,14 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
         data.only(&[Observable::Incident])
     };
     let said = |own: &[String]| {
-        let chains = Chains { dry: &dry_model, wet: &wet_model, free: &free, own, accuracy: 1e-5 };
+        let chains = Chains {
+            dry: &dry_model,
+            wet: &wet_model,
+            free: &free,
+            own,
+            systematic: &[],
+            accuracy: 1e-5,
+        };
         let gauge = Gauge::new(&chains, measured(&dry_model, 11), measured(&held, 12)).unwrap();
         let verdict = gauge.verdict(&known_oils().unwrap()).unwrap();
         (verdict.sentence(), gauge.doubts(&verdict))
@@ -99,7 +113,14 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
 fn a_wet_curve_in_the_dry_ones_place_is_told() {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains { dry: &dry_model, wet: &wet_model, free: &free, own: &[], accuracy: 1e-5 };
+    let chains = Chains {
+        dry: &dry_model,
+        wet: &wet_model,
+        free: &free,
+        own: &[],
+        systematic: &[],
+        accuracy: 1e-5,
+    };
     let reported = |[dry, wet]: [&Experiment; 2]| {
         let gauge = Gauge::new(
             &chains,
@@ -124,6 +145,7 @@ fn with_loads_of_their_own_the_advice_is_to_leave_returns_out() {
         wet: &wet_model,
         free: &["aisi316.eta".to_owned(), "dry.B".to_owned()],
         own: &["near_end.force".to_owned()],
+        systematic: &[],
         accuracy: 1e-5,
     };
     let measured = |of: &Experiment, seed| Truth::of(of, &SPEEDS_M_S).measured(seed);

@@ -22,7 +22,14 @@ fn mine() -> Oil {
 fn gauge(wet: Data, speeds: &[f64], seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains { dry: &dry_model, wet: &wet_model, free: &free, own: &[], accuracy: 1e-5 };
+    let chains = Chains {
+        dry: &dry_model,
+        wet: &wet_model,
+        free: &free,
+        own: &[],
+        systematic: &[],
+        accuracy: 1e-5,
+    };
     let dry = Truth::of(&dry_model, speeds).measured(seed);
     Gauge::new(&chains, dry, wet).unwrap()
 }

@@ -52,7 +52,7 @@ fn repeated(sets: u64, measured: impl Fn(&Truth, u64) -> Data) -> ([Vec<f64>; 2]
     let mut pulls: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
     let mut probabilities = Vec::new();
     for seed in 0..sets {
-        let repeated = surrogate.with_data(measured(&truth, 1000 + seed)).unwrap();
+        let repeated = surrogate.with_data([measured(&truth, 1000 + seed)]).unwrap();
         let best = fit(&repeated, &Fitting::default()).unwrap();
         let covariance = Covariance::new(repeated.parameters(), &best);
         for (at, exact) in [3.2e4, 77.0].into_iter().enumerate() {

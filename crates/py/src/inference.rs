@@ -7,7 +7,7 @@ use crate::json;
 use crate::options::parsed;
 use hertzchain::failure::Failure;
 use hertzchain::fit::pulses;
-use hertzchain::inference::{changed, in_case, model, parsed as data, problem, user};
+use hertzchain::inference::{changed, in_case, parsed as data, user};
 use hertzchain::options::{
     CurveOptions as Measured, DesignOptions as Design, FitOptions as Fit, GaugeOptions as Gauge,
 };
@@ -30,13 +30,14 @@ fn read((name, text): &Table, measured: &Measured, case: Option<&String>) -> Res
 #[pyfunction]
 pub(crate) fn fit<'py>(
     py: Python<'py>,
-    table: Table,
-    experiment: &Experiment,
+    tables: Vec<(Table, PyRef<'py, Experiment>)>,
     options: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let tables = tables.into_iter().map(|(table, experiment)| (table, experiment.inner.clone()));
+    let tables: Vec<_> = tables.collect();
     found(py, options, progress, |arguments| {
-        let problem = posed(&table, experiment, arguments)?;
+        let problem = posed(&tables, arguments)?;
         let fit_result = fitting::fit_result(problem, arguments)?;
         left(&fit_result.inferred, arguments)?;
         Ok(Found::of(&fit_result, arguments))
@@ -93,15 +94,17 @@ pub(crate) fn fit_pulses<'py>(
 
 /// What is to be fitted to what.
 pub(crate) fn posed(
-    table: &Table,
-    experiment: &Experiment,
+    tables: &[(Table, hertzchain_experiment::Experiment)],
     arguments: &Fit,
 ) -> Result<CurveProblem, Failure> {
-    let data = read(table, &arguments.measured, None)?;
-    let inner = in_case(experiment.inner.clone(), &data.case)?;
-    let inner = changed(inner, &arguments.modelled.set)?;
-    let model = model(&inner, &arguments.modelled, &arguments.freed)?;
-    problem(model, data, &arguments.freed)
+    let case = arguments.measured.case.as_ref();
+    let pair = |(at, (table, experiment)): (usize, &(Table, _))| {
+        // A case is the first table's: others have theirs alone.
+        let case = case.filter(|_| at == 0).cloned();
+        Ok((data(&table.0, &table.1, &arguments.measured, case)?, Clone::clone(experiment)))
+    };
+    let pairs = tables.iter().enumerate().map(pair).collect::<Result<Vec<_>, Failure>>()?;
+    hertzchain::inference::posed(&pairs, arguments)
 }
 
 /// A fit as Python gets it.

@@ -10,7 +10,8 @@ use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 
 /// Options that a Python call has otherwise or not at all: data are arguments, results are objects.
-const COMMAND_LINE: [&str; 15] = [
+const COMMAND_LINE: [&str; 16] = [
+    "also",
     "animate",
     "data",
     "dry_preset",

@@ -63,7 +63,7 @@ impl Likelihood {
     fn new(table: Table, experiment: &Experiment, options: String) -> Result<Self, PyFailure> {
         let arguments: Fit = parsed("fit", &options)?;
         Ok(Self {
-            inner: posed(&table, experiment, &arguments)?,
+            inner: posed(&[(table.clone(), experiment.inner.clone())], &arguments)?,
             arguments,
             table,
             experiment: experiment.clone(),

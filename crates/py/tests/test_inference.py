@@ -186,3 +186,17 @@ def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
 def test_what_makes_no_sense_is_refused_in_words(data, options, words):
     with pytest.raises(hc.HertzchainError, match=words):
         hc.fit(data, **options)
+
+
+def test_several_tables_are_fitted_together_with_a_systematic_error() -> None:
+    dry = hc.preset("dry")
+    near = hc.sweep(dry, np.geomspace(0.2, 1.0, 5))
+    far_row = dry.set({"sensors.bead": 20})
+    far = hc.sweep(far_row, np.geomspace(0.2, 1.0, 5))
+    how = {"free": "eta,B", "tof_error": "0.1 us", "speed_error": 0, "systematic": {"delay": 2e-7}}
+    one = hc.fit(near, dry, **how)
+    both = hc.fit(near, dry, also=[(far, far_row)], **how)
+    assert list(both.parameters) == ["eta", "B", "delay"]
+    assert both.parameters["delay"].standard_error < one.parameters["delay"].standard_error
+    assert len(both.details["tables"]) == 2 and len(both.rows["file"]) == 20
+    assert both.parameters["B"].value == pytest.approx(77, abs=both.parameters["B"].standard_error)

@@ -118,7 +118,14 @@ fn run_gauge(text: &str, table: &str, said: &mut [Said; 2]) -> Result<(), Box<dy
             Data::parse("speeds.csv", table, &selection)
         };
         for (liquid, said) in LIQUIDS.iter().zip(said) {
-            let chains = Chains { dry: &dry, wet: &wet, free: &free, own: &[], accuracy: 1e-5 };
+            let chains = Chains {
+                dry: &dry,
+                wet: &wet,
+                free: &free,
+                own: &[],
+                systematic: &[],
+                accuracy: 1e-5,
+            };
             let gauge = Gauge::new(&chains, data("dry")?, data(liquid)?)?;
             let verdict = gauge.verdict(&known_oils()?)?;
             let names: Vec<&str> = verdict.allowed().map(|found| found.oil.as_str()).collect();

@@ -1,6 +1,6 @@
 //! Other models of the same data.
 
-use super::{asked, best_of_starts, finer};
+use super::{asked, best_fit};
 use crate::failure::Failure;
 use crate::inference::{self, is_meant, unit_changes, user, wanted};
 use crate::options::{
@@ -92,22 +92,8 @@ fn other(
         other => other,
     };
     let (posed, without) = posed(against, problem, arguments).map_err(of_rival)?;
-    attempted(name.clone(), posed, without, 0, arguments).map_err(of_rival)
-}
-
-/// The fit of another model, after so many attempts with less accurate curves.
-fn attempted(
-    name: String,
-    posed: CurveProblem,
-    without: Vec<String>,
-    times: u32,
-    arguments: &Arguments,
-) -> Result<Result<AlternativeModel, Unfitted>, Failure> {
     let reported = unit_changes(posed.model(), &arguments.modelled.set);
-    let fit = best_of_starts(&posed, 0, &asked(arguments))?;
-    if let Some(finer) = finer(&posed, &fit, times) {
-        return attempted(name, finer, without, times + 1, arguments);
-    }
+    let (posed, fit) = best_fit(posed, 0, &asked(arguments)).map_err(of_rival)?;
     if !fit.ending.converged() {
         return Ok(Err(Unfitted {
             chi_square: fit.chi_square(),
@@ -115,7 +101,8 @@ fn attempted(
             name,
         }));
     }
-    let alternative = alternative(name.clone(), (&posed, &posed), fit, arguments.seed)?;
+    let alternative = alternative(name.clone(), (&posed, &posed), fit, arguments.seed);
+    let alternative = alternative.map_err(of_rival)?;
     Ok(Ok(AlternativeModel { without, kept: reported, ..alternative }))
 }
 
@@ -126,7 +113,7 @@ fn posed(
     problem: &CurveProblem,
     arguments: &Arguments,
 ) -> Result<(CurveProblem, Vec<String>), Failure> {
-    let mut modelled = against.modelled(&arguments.modelled);
+    let mut modelled = arguments.modelled.of_other(&against.model);
     // A model far from the data is steep there: its noise would hide the minimum.
     modelled.accuracy = Accuracy(modelled.accuracy.0.min(ALTERNATIVES_ACCURACY));
     let data = problem.data().clone();
@@ -180,6 +167,7 @@ fn renamed(known: &Freed, own: &Experiment, free: &[String], alternative: &Exper
         bounds: all(&known.bounds),
         prior: all(&known.prior),
         scale: all(&known.scale),
+        systematic: known.systematic.clone(),
     }
 }
 
@@ -207,6 +195,7 @@ fn about(freed: Freed, parameters: &[&str]) -> Freed {
         bounds: known(freed.bounds),
         prior: known(freed.prior),
         scale: known(freed.scale),
+        systematic: freed.systematic,
     }
 }
 
@@ -220,7 +209,7 @@ fn alternative(
     seed: u64,
 ) -> Result<AlternativeModel, Failure> {
     // What was measured at one speed is left out together.
-    let groups = problem.measured().into_iter().map(|(row, _)| row).collect();
+    let groups = problem.measured().into_iter().map(|(_, row, _)| row).collect();
     let how = Folding { groups, parts: Some(PARTS.min(problem.data().rows.len())), seed };
     let foretells = enough(problem.data().rows.len(), fit.point.len())
         .then(|| cross_validate(kept, &fit, &how))

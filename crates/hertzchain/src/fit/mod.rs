@@ -24,8 +24,8 @@ use crate::options::FitOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Advice, Covariance, CurveProblem, Data, Fit, FitCurve, Fitting, FreeNumber, Goodness,
-    Identifiability, Loss, Observable, Parameter, Problem, PulseProblem, Speeds, Started,
-    fit as least_squares,
+    Identifiability, Loss, MeasuredCurve, Observable, Parameter, Prior, Problem, PulseProblem,
+    Started, fit as least_squares,
 };
 
 /// Residuals beyond so many standard errors count by their size when outliers are expected.
@@ -61,17 +61,36 @@ pub struct FitResult {
     pub problem: CurveProblem,
     /// What came of it.
     pub inferred: Inferred,
-    /// The model at the best fit.
-    pub curve: FitCurve,
+    /// The models at the best fit, one a table.
+    pub curves: Vec<FitCurve>,
     /// Largest relative error of the model's times of flight there.
     pub accuracy: f64,
     /// What would settle what the data leave open, if they leave anything open.
     pub advice: Option<Advice>,
     /// Other models of the same data.
     pub alternatives: Option<AlternativeModels>,
-    /// The unit that speeds seem to be in, where the model does not follow and they seem not
-    /// to be in m/s.
-    pub unit_of_speed: Option<&'static str>,
+    /// The unit that speeds of a table seem to be in, where the model does not follow and they seem
+    /// not to be in m/s.
+    pub unit_of_speed: Option<(String, &'static str)>,
+}
+
+/// A table of a fit and what the fit makes of it.
+pub struct TableFit<'a> {
+    /// The data and their model.
+    pub curve: &'a MeasuredCurve,
+    /// The model at the best fit.
+    pub fit_curve: &'a FitCurve,
+    /// Place of its first residual.
+    pub first: usize,
+    /// Its residuals.
+    pub residuals: &'a [f64],
+}
+
+impl TableFit<'_> {
+    /// Sum of its squared residuals.
+    pub fn chi_square(&self) -> f64 {
+        self.residuals.iter().map(|r| r * r).sum()
+    }
 }
 
 impl Inferred {
@@ -83,6 +102,12 @@ impl Inferred {
             true => f64::INFINITY,
             false => sd,
         }
+    }
+
+    /// Whether priors determine what the data leave open.
+    pub fn is_closed_by_priors(&self) -> bool {
+        let any = self.parameters.iter().any(|parameter| parameter.prior != Prior::Flat);
+        any && (0..self.parameters.len()).all(|at| self.standard_error(at).is_finite())
     }
 
     /// Minima of other starts that fit as well, and how many starts came to each.
@@ -99,6 +124,22 @@ impl Inferred {
 }
 
 impl FitResult {
+    /// The tables, in the order of the pairs that were fitted.
+    pub fn tables<'a>(&'a self) -> Vec<TableFit<'a>> {
+        let mut end = 0;
+        let table = |(curve, fit_curve): (&'a MeasuredCurve, &'a FitCurve)| {
+            let first = end;
+            end += curve.data().value_count();
+            TableFit {
+                residuals: &self.inferred.fit.residuals[first..end],
+                curve,
+                fit_curve,
+                first,
+            }
+        };
+        self.problem.curves().iter().zip(&self.curves).map(table).collect()
+    }
+
     /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
     /// each.
     pub(crate) fn unasked(&self, arguments: &Arguments) -> Vec<String> {
@@ -123,7 +164,8 @@ impl FitResult {
         let ratios = [Observable::WallOverPassing, Observable::ReturningOverPassing];
         let times_alone = !ratios.iter().any(|of| data.has(*of));
         let few = times_alone && data.value_count() <= 2 * pairs;
-        (few && self.inferred.fit.starts.len() == 1).then(|| {
+        let alone = self.curves.len() == 1 && self.inferred.fit.starts.len() == 1;
+        (few && alone).then(|| {
             "Several pairs of K and A may give the same two times of flight, and this fit looked for one: see whether \
              others fit as well by --starts with --bounds of both, or by `hertzchain gauge`, which follows all pairs"
                 .to_owned()
@@ -177,19 +219,32 @@ fn unasked(fit: &Fit, (asked, reached): (f64, f64), starts: usize) -> Vec<String
 /// Times that a fit without a minimum is repeated with curves ten times as accurate.
 const MOST_FINER: u32 = 2;
 
-/// The same problem with more accurate curves, where a fit of curves found no minimum: their
-/// errors jump where the solver takes another number of steps, and hide what is small.
-fn finer<P: Modelled>(problem: &P, fit: &Fit, times: u32) -> Option<P> {
-    let more = !fit.ending.converged() && times < MOST_FINER;
-    more.then(|| problem.computed_to(0.1 * problem.accuracy()))
+/// The best fit, with the problem that it is of: with more accurate curves, where others have no
+/// minimum. Errors of curves jump where the solver takes another number of steps, and hide what is
+/// small.
+fn best_fit<P: Modelled>(
+    mut problem: P,
+    nuisances: usize,
+    how: &Fitting,
+) -> Result<(P, Fit), Failure> {
+    for _ in 0..MOST_FINER {
+        let fit = best_of_starts(&problem, nuisances, how)?;
+        if fit.ending.converged() {
+            return Ok((problem, fit));
+        }
+        let accuracy = 0.1 * problem.accuracy();
+        problem = problem.computed_to(accuracy);
+    }
+    let fit = best_of_starts(&problem, nuisances, how)?;
+    Ok((problem, fit))
 }
 
 /// A problem whose curves can be computed more accurately.
-trait Modelled: Problem + Clone {
+trait Modelled: Problem {
     /// The model's accuracy.
     fn accuracy(&self) -> f64;
     /// The same problem at another accuracy.
-    fn computed_to(&self, accuracy: f64) -> Self;
+    fn computed_to(self, accuracy: f64) -> Self;
 }
 
 impl Modelled for CurveProblem {
@@ -197,8 +252,8 @@ impl Modelled for CurveProblem {
         self.model().accuracy
     }
 
-    fn computed_to(&self, accuracy: f64) -> Self {
-        self.clone().with_accuracy(accuracy)
+    fn computed_to(self, accuracy: f64) -> Self {
+        self.with_accuracy(accuracy)
     }
 }
 
@@ -207,8 +262,8 @@ impl Modelled for PulseProblem {
         self.model().accuracy
     }
 
-    fn computed_to(&self, accuracy: f64) -> Self {
-        self.clone().with_accuracy(accuracy)
+    fn computed_to(self, accuracy: f64) -> Self {
+        self.with_accuracy(accuracy)
     }
 }
 
@@ -247,32 +302,26 @@ pub fn fit(
     experiment: &Experiment,
     options: &Arguments,
 ) -> Result<FitResult, Failure> {
-    let experiment = inference::in_case(experiment.clone(), &data.case)?;
-    let experiment = inference::changed(experiment, &options.modelled.set)?;
-    let model = inference::model(&experiment, &options.modelled, &options.freed)?;
-    fit_result(inference::problem(model, data.clone(), &options.freed)?, options)
+    fit_tables(&[(data.clone(), experiment.clone())], options)
 }
 
-/// Fits a curve, determines the uncertainty as the method asks, and compares with
+/// Fits several tables together, each to its own experiment: free numbers of one name are one
+/// parameter, but for those that [`own`](Arguments::own) names.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_tables(pairs: &[(Data, Experiment)], options: &Arguments) -> Result<FitResult, Failure> {
+    fit_result(inference::posed(pairs, options)?, options)
+}
+
+/// Fits curves, determines the uncertainty as the method asks, and compares with
 /// other models.
 ///
 /// # Errors
 /// What is in the way of a fit.
 pub fn fit_result(problem: CurveProblem, arguments: &Arguments) -> Result<FitResult, Failure> {
     validation::of_table(arguments)?;
-    attempted(problem, 0, arguments)
-}
-
-/// The same, after so many attempts with less accurate curves.
-fn attempted(
-    problem: CurveProblem,
-    times: u32,
-    arguments: &Arguments,
-) -> Result<FitResult, Failure> {
-    let fit = best_of_starts(&problem, 0, &asked(arguments))?;
-    if let Some(finer) = finer(&problem, &fit, times) {
-        return attempted(finer, times + 1, arguments);
-    }
+    let (problem, fit) = best_fit(problem, 0, &asked(arguments))?;
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more(&problem, (&fit, &covariance), arguments)?;
     let found = concluded(&problem, &problem, (fit, covariance, more), arguments)?;
@@ -327,15 +376,22 @@ fn reported(
     (inferred, alternatives): (Inferred, Option<AlternativeModels>),
 ) -> Result<FitResult, Failure> {
     let (fit, covariance) = (&inferred.fit, &inferred.covariance);
-    let speeds = Speeds::of_rows(&problem.data().speeds_m_s());
-    let accuracy = problem.model().accuracy_reached(&fit.point, &speeds);
-    let open = !inferred.identifiability.unidentifiable.is_empty() && fit.ending.converged();
+    let all = problem.curves();
+    let alone = all.len() == 1 && fit.ending.converged() && !inferred.is_closed_by_priors();
+    let open = !inferred.identifiability.unidentifiable.is_empty() && alone;
+    let curves = all.iter().map(|curve| curve.fit_curve(fit, covariance));
+    let accuracies = all.iter().map(|curve| curve.accuracy_reached(&fit.point));
+    let accuracies = accuracies.collect::<Result<Vec<f64>, _>>().map_err(user)?;
+    let start: Vec<f64> = inferred.parameters.iter().map(|p| p.start).collect();
+    let unit = |curve: &MeasuredCurve| {
+        Some((curve.data().file.clone(), curve.other_unit_of_speed(&start)?))
+    };
     let rejected = inferred.goodness.is_rejected();
     Ok(FitResult {
-        unit_of_speed: rejected.then(|| problem.other_unit_of_speed()).flatten(),
+        unit_of_speed: rejected.then(|| all.iter().find_map(unit)).flatten(),
         advice: open.then(|| problem.suggested_measurements(fit)),
-        curve: problem.fit_curve(fit, covariance).map_err(user)?,
-        accuracy: accuracy.map_err(user)?,
+        curves: curves.collect::<Result<_, _>>().map_err(user)?,
+        accuracy: accuracies.into_iter().fold(0.0, f64::max),
         alternatives,
         inferred,
         problem,

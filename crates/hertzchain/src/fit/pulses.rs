@@ -1,8 +1,6 @@
 //! Whole pulses of recordings to parameters.
 
-use super::{
-    Curves, Inferred, asked, best_of_starts, finer, inferred, joined, limits, more, unasked,
-};
+use super::{Curves, Inferred, asked, best_fit, inferred, joined, limits, more, unasked};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
 use crate::measure::{files, list};
@@ -173,20 +171,8 @@ pub fn fit_result(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, F
     let problem = problem.map_err(|error| none_left(&error, &refused))?;
     refused.extend(problem.left_out().iter().cloned());
     let problem = inference::pulses(problem, &arguments.freed)?;
-    attempted(problem, refused, 0, arguments)
-}
-
-/// The fit, after so many attempts with a less accurate model.
-fn attempted(
-    problem: PulseProblem,
-    refused: Vec<String>,
-    times: u32,
-    arguments: &Arguments,
-) -> Result<Pulsed, Failure> {
-    let fit = best_of_starts(&problem, problem.nuisance_count(), &asked(arguments))?;
-    if let Some(finer) = finer(&problem, &fit, times) {
-        return attempted(finer, refused, times + 1, arguments);
-    }
+    let nuisances = problem.nuisance_count();
+    let (problem, fit) = best_fit(problem, nuisances, &asked(arguments))?;
     let parameters = problem.parameters();
     let covariance = Covariance::new(parameters, &fit);
     let label = |at: usize| problem.residual_label(at);

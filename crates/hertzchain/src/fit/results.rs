@@ -2,7 +2,7 @@
 
 use super::alternatives::{AlternativeModel, AlternativeModels};
 use super::more::{Curves, More};
-use super::{FitResult, Inferred, Limit};
+use super::{FitResult, Inferred, Limit, TableFit};
 use crate::inference::{assumed, held_loads, references_json, unit_changes, widened};
 use crate::options::FitOptions as Arguments;
 use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 /// Everything, to be read by programs and to be repeated.
 pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
     let data = fit_result.problem.data();
-    let own = json!({
+    let mut own = json!({
         "data": { "file": data.file, "case": data.case, "rows": data.rows.len(), "values": data.value_count() },
         "model": fit_result.problem.model().experiment().name(),
         "model_accuracy": fit_result.accuracy,
@@ -28,7 +28,28 @@ pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
         "prospects": fit_result.advice.as_ref().map(prospects),
         "comparison": fit_result.alternatives.as_ref().map(comparison),
     });
+    let tables = fit_result.tables();
+    if tables.len() > 1 {
+        let all =
+            tables.iter().filter_map(|table| assumed(table.curve.data(), &arguments.measured));
+        own["assumed"] = all.reduce(|all, one| format!("{all}; {one}")).into();
+        own["tables"] = tables.iter().map(table).collect();
+    }
     joined(own, inferred(&fit_result.inferred, arguments))
+}
+
+/// A table of several that were fitted together.
+fn table(of: &TableFit<'_>) -> Value {
+    let (data, model) = (of.curve.data(), of.curve.model());
+    json!({
+        "file": data.file,
+        "case": data.case,
+        "model": model.experiment().name(),
+        "free": model.numbers().as_slice().iter().map(|number| number.name()).collect::<Value>(),
+        "rows": data.rows.len(),
+        "values": data.value_count(),
+        "chi_square": of.chi_square(),
+    })
 }
 
 /// What further data would determine.
@@ -244,13 +265,18 @@ fn compared(alternatives: &AlternativeModels, comparison: &Comparison) -> Value 
 
 /// Every measured value beside the fitted one with its standard error.
 pub fn rows_json(fit_result: &FitResult) -> Value {
-    let measured = fit_result.problem.measured().into_iter();
+    let tables = fit_result.tables();
+    tables.iter().flat_map(|table| rows_of(table, tables.len() > 1)).collect()
+}
+
+fn rows_of(table: &TableFit<'_>, with_file: bool) -> Vec<Value> {
+    let data = table.curve.data();
     let one = |((at, of), residual): ((usize, Observable), &f64)| {
-        let row = &fit_result.problem.data().rows[at];
+        let row = &data.rows[at];
         let value = row.value(of);
-        let predicted = fit_result.curve.predicted.get(at);
-        let sd = fit_result.curve.sd.get(at).map(|row| row[of as usize]);
-        json!({
+        let predicted = table.fit_curve.predicted.get(at);
+        let sd = table.fit_curve.sd.get(at).map(|row| row[of as usize]);
+        let mut all = json!({
             "line": row.line,
             "speed_m_s": row.speed_m_s.value,
             "speed_error_m_s": row.speed_m_s.sigma,
@@ -260,7 +286,11 @@ pub fn rows_json(fit_result: &FitResult) -> Value {
             "fitted": predicted.and_then(|row| row[of as usize]),
             "fitted_error": sd.filter(|sd| sd.is_finite()),
             "residual": residual,
-        })
+        });
+        if with_file {
+            all["file"] = data.file.clone().into();
+        }
+        all
     };
-    measured.zip(&fit_result.inferred.fit.residuals).map(one).collect()
+    table.curve.measured().zip(table.residuals).map(one).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::alternatives::AlternativeModels;
 use super::more::{More, Sampled};
-use super::{FitResult, Inferred};
+use super::{FitResult, Inferred, TableFit};
 use crate::csv::{Cell, Csv, square};
 use hertzchain_infer::{
     Comparison, Diagnosis, End, Interval, Observable, Parameter, Posterior, Profile, titled,
@@ -248,13 +248,19 @@ fn comparison(alternatives: &AlternativeModels) -> String {
 
 /// One line a measured value.
 fn rows(fit_result: &FitResult) -> String {
-    let titles = "line,speed_m_s,observable,measured,error,fitted,fitted_error,residual";
-    let measured = fit_result.problem.measured().into_iter();
-    let line = |((at, of), residual): ((usize, Observable), &f64)| -> [Cell; 8] {
-        let row = &fit_result.problem.data().rows[at];
-        let (value, curve) = (row.value(of), &fit_result.curve);
+    let tables = fit_result.tables();
+    let several = (tables.len() > 1).then_some("file");
+    let titles = "line,speed_m_s,observable,measured,error,fitted,fitted_error,residual".split(',');
+    let all = tables.iter().flat_map(|table| {
+        let measured = table.curve.measured().zip(table.residuals);
+        measured.map(move |line| (table, line))
+    });
+    let line = |(table, ((at, of), residual)): (&TableFit<'_>, ((usize, Observable), &f64))| {
+        let data = table.curve.data();
+        let row = &data.rows[at];
+        let (value, curve) = (row.value(of), table.fit_curve);
         let predicted = curve.predicted.get(at).and_then(|row| row[of as usize]);
-        [
+        let cells: [Cell; 8] = [
             row.line.to_string().into(),
             row.speed_m_s.value.into(),
             of.column().into(),
@@ -263,8 +269,9 @@ fn rows(fit_result: &FitResult) -> String {
             predicted.into(),
             curve.sd.get(at).map(|row| row[of as usize]).into(),
             (*residual).into(),
-        ]
+        ];
+        let file = several.map(|_| Cell::from(data.file.clone()));
+        cells.into_iter().chain(file).collect::<Vec<_>>()
     };
-    let lines = measured.zip(&fit_result.inferred.fit.residuals);
-    Csv::new(titles.split(',')).with_all(lines, line).text()
+    Csv::new(titles.chain(several)).with_all(all, line).text()
 }

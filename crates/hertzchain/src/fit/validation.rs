@@ -30,6 +30,9 @@ pub(super) fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
     let why = "compares models of a table of times of flight, and DATA are recordings: take their times by \
                `hertzchain measure` and compare models of speeds.csv, or fit the other model to the recordings by itself";
     refuse("--against", !arguments.against.is_empty(), why)?;
+    let why =
+        "fits several tables of times of flight together, and DATA are recordings: leave it out";
+    refuse("--also", !arguments.also.is_empty(), why)?;
     let why = "is for tables of times of flight, and DATA are recordings, whose noise is taken from themselves: leave it out";
     refuse("--tof-error", arguments.measured.tof_error.is_some(), why)?;
     refuse("--ratio-error", arguments.measured.ratio_error.is_some(), why)?;

@@ -55,9 +55,12 @@ pub fn gauge(
     oils: Vec<Oil>,
     options: &Arguments,
 ) -> Result<GaugeResult, Failure> {
+    let dry_row = inference::in_case(dry_row.clone(), &dry.case)?;
+    let systematic = options.systematic.iter().map(|one| inference::systematic(&dry_row, one));
     let chains = Chains {
         wet: &inference::in_case(wet_row.clone(), &wet.case)?,
-        dry: &inference::in_case(dry_row.clone(), &dry.case)?,
+        dry: &dry_row,
+        systematic: &systematic.collect::<Result<Vec<_>, _>>().map_err(user)?,
         free: &options.dry_free,
         own: &options.own,
         accuracy: options.accuracy.0,

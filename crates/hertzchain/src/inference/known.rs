@@ -2,8 +2,9 @@
 
 use crate::failure::Failure;
 use crate::options::{Assignment, ParameterOptions as Freed};
+use hertzchain_experiment::Experiment;
 use hertzchain_experiment::units::{Dimension, parse_quantity, parse_unit};
-use hertzchain_infer::{Parameter, Prior};
+use hertzchain_infer::{FreeNumber, InferError, Parameter, Prior};
 
 /// The number in a text, whatever its unit.
 pub(super) fn any_number(text: &str) -> Option<f64> {
@@ -62,10 +63,32 @@ fn each(
     Ok(())
 }
 
-/// Whether a name means a parameter: its own, or that of the number it is one of.
+/// Whether a name means a parameter: its own, or that of the number it is one of, of any table.
 pub fn is_meant(name: &str, parameter: &str) -> bool {
-    let rest = parameter.strip_prefix(name);
+    let rest = parameter.strip_prefix(name).map(|rest| match rest.strip_prefix('#') {
+        Some(table) => table.trim_start_matches(|c: char| c.is_ascii_digit()),
+        None => rest,
+    });
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('@') || rest == ".prefactor")
+}
+
+/// A systematic error: its name and standard deviation in SI, or in percent of the number.
+///
+/// # Errors
+/// No such number, or no positive size.
+pub fn systematic(experiment: &Experiment, one: &Assignment) -> Result<(String, f64), InferError> {
+    let Assignment { name, text } = one;
+    let found = FreeNumber::find(experiment, name, None)?.parameters(&[]);
+    let wrong = |why: String| InferError::Input(format!("--systematic {one}: {why}"));
+    let parameter = found.first().ok_or_else(|| wrong("expected one number".to_owned()))?;
+    let share = text.ends_with('%').then_some(parameter.start.abs());
+    let sd = number(parameter, text).map_err(wrong)? * share.unwrap_or(1.0);
+    match sd > 0.0 && sd.is_finite() {
+        true => Ok((name.clone(), sd)),
+        false => {
+            Err(wrong("expected a standard deviation above 0, such as delay=0.2us".to_owned()))
+        }
+    }
 }
 
 /// A number in the parameter's unit: plain in SI, or with a unit of its own.

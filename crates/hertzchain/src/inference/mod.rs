@@ -9,12 +9,13 @@ pub use self::{
     reference::{references, references_json},
     unit_changes::{held_loads, unit_changes},
 };
+pub(crate) use known::systematic;
 
 use crate::failure::Failure;
 use crate::input;
 use crate::options::Input;
 use crate::options::{
-    Assignment, CurveOptions as Measured, ErrorShots, ModelOptions as Modelled,
+    Assignment, CurveOptions as Measured, ErrorShots, FitOptions, ModelOptions as Modelled,
     ParameterOptions as Freed, Speed, What,
 };
 use hertzchain_experiment::{Experiment, PathError, Units};
@@ -352,6 +353,12 @@ pub fn model(
     if freed.free.is_empty() {
         return Err(user("nothing is free: --free names numbers, such as eta,B"));
     }
+    let numbers: Result<Vec<_>, _> = numbers(experiment, freed).into_iter().collect();
+    of_numbers(experiment, modelled, numbers.map_err(user)?)
+}
+
+/// Free numbers of an experiment and systematic errors, in the order of the options.
+fn numbers(experiment: &Experiment, freed: &Freed) -> Vec<Result<FreeNumber, InferError>> {
     let number = |name: &String| {
         let plain = name.split(':').next().unwrap_or_default().trim();
         let start = freed.start.iter().find(|start| start.name == plain);
@@ -359,8 +366,19 @@ pub fn model(
         let start = start.and_then(|start| known::any_number(&start.text));
         FreeNumber::find(experiment, name, start)
     };
-    let numbers: Result<Vec<_>, InferError> = freed.free.iter().map(number).collect();
-    let numbers = FreeNumbers::new(numbers.map_err(user)?).map_err(user)?;
+    let systematic = |one: &Assignment| {
+        let (name, sd) = known::systematic(experiment, one)?;
+        FreeNumber::systematic(experiment, &name, sd)
+    };
+    freed.free.iter().map(number).chain(freed.systematic.iter().map(systematic)).collect()
+}
+
+fn of_numbers(
+    experiment: &Experiment,
+    modelled: &Modelled,
+    numbers: Vec<FreeNumber>,
+) -> Result<Model, Failure> {
+    let numbers = FreeNumbers::new(numbers).map_err(user)?;
     let mut model = Model::new(experiment, numbers)?.with_accuracy(modelled.accuracy.0);
     model.set = input::instruction_set()?;
     Ok(model)
@@ -371,6 +389,54 @@ pub fn problem(model: Model, data: Data, freed: &Freed) -> Result<CurveProblem, 
     let mut parameters = model.numbers().parameters(&data.speeds_m_s());
     known::apply(freed, &mut parameters)?;
     CurveProblem::new(model, data, parameters).map_err(user)
+}
+
+/// Tables against their models, in which numbers of one name are one parameter. A model that does
+/// not know a free number of the others' goes without.
+///
+/// # Errors
+/// Options, data and models that do not fit together.
+pub fn posed(pairs: &[(Data, Experiment)], options: &FitOptions) -> Result<CurveProblem, Failure> {
+    let (modelled, freed) = (&options.modelled, &options.freed);
+    if freed.free.is_empty() {
+        return Err(user("nothing is free: --free names numbers, such as eta,B"));
+    }
+    if pairs.len() == 1 && !options.own.is_empty() {
+        return Err(user("--own is for several tables (--also): leave it out"));
+    }
+    if pairs.len() > 1 && !options.against.is_empty() {
+        return Err(user(
+            "--against compares models of one table, and there are several: leave it out",
+        ));
+    }
+    let experiment = |(data, experiment): &(Data, Experiment)| {
+        changed(in_case(experiment.clone(), &data.case)?, &modelled.set)
+    };
+    let experiments = pairs.iter().map(experiment).collect::<Result<Vec<_>, _>>()?;
+    let found: Vec<_> = experiments.iter().map(|one| numbers(one, freed)).collect();
+    let mut curves = Vec::new();
+    for (((data, _), experiment), own) in pairs.iter().zip(&experiments).zip(&found) {
+        let mut known = Vec::new();
+        for (at, number) in own.iter().enumerate() {
+            match number {
+                Ok(number) => known.push(number.clone()),
+                Err(InferError::Input(_)) if found.iter().any(|other| other[at].is_ok()) => {}
+                Err(error) => return Err(user(error)),
+            }
+        }
+        curves.push((of_numbers(experiment, modelled, known)?, data.clone()));
+    }
+    let is_free = |name: &&String| {
+        let mut numbers = curves.iter().flat_map(|(model, _)| model.numbers().as_slice());
+        numbers.any(|number| number.name() == name.as_str())
+    };
+    if let Some(name) = options.own.iter().find(|name| !is_free(name)) {
+        return Err(user(format!("--own {name}: nothing of this name is free")));
+    }
+    let problem = CurveProblem::of_curves(curves, &options.own);
+    let mut parameters = problem.parameters().to_vec();
+    known::apply(freed, &mut parameters)?;
+    problem.with_parameters(parameters).map_err(user)
 }
 
 /// Recordings against a model with what is known of its parameters.

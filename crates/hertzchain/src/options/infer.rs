@@ -2,8 +2,8 @@
 
 use super::values::{pairs, some_speeds, texts};
 use super::{
-    Accuracy, Against, Assignment, Cost, ErrorShots, Few, Frequency, Positive, Preload, Speed,
-    Threads, Time,
+    Accuracy, Against, Also, Assignment, Cost, ErrorShots, Few, Frequency, Positive, Preload,
+    Speed, Threads, Time,
 };
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -111,6 +111,12 @@ pub struct ParameterOptions {
     #[arg(long, value_name = "NAME=VALUE")]
     #[serde(with = "pairs")]
     pub scale: Vec<Assignment>,
+    /// Systematic errors as nuisance parameters, each a number that is known to a standard deviation
+    /// from elsewhere: delay=0.2us, reflected_delay, skew (of the wall's channel), speed_scale=1%,
+    /// radius_error=1um, or any number that can be free
+    #[arg(long, value_name = "NAME=SD", value_delimiter = ',')]
+    #[serde(with = "pairs")]
+    pub systematic: Vec<Assignment>,
 }
 
 /// Options of `fit`.
@@ -138,6 +144,14 @@ pub struct FitOptions {
     #[command(flatten)]
     #[serde(flatten)]
     pub freed: ParameterOptions,
+    /// A further table and its model, preset or file, fitted together with DATA: numbers that are free
+    /// have one value in all models that know them; may be given several times
+    #[arg(long, value_name = "DATA=MODEL[,CASE]")]
+    #[serde(skip_serializing)]
+    pub also: Vec<Also>,
+    /// Free numbers that each table has for itself, such as preload: preload#1 is DATA's
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub own: Vec<String>,
     /// How uncertainty is reported, beside the covariance
     #[arg(long, value_enum, value_name = "NAME", default_value = "covariance")]
     pub method: Method,
@@ -365,6 +379,11 @@ pub struct GaugeOptions {
     /// friction holds in a tapped row (near_end.force); fitted anew with every oil
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub own: Vec<String>,
+    /// Systematic errors that both curves share, as nuisance parameters: delay=0.2us, reflected_delay,
+    /// skew (of the wall's channel), speed_scale=1%, radius_error=1um, or any number that can be free
+    #[arg(long, value_name = "NAME=SD", value_delimiter = ',')]
+    #[serde(with = "pairs")]
+    pub systematic: Vec<Assignment>,
     /// How K and A of the wet contacts depend on speed
     #[arg(long, value_enum, value_name = "FORM", default_value = "each")]
     pub form: WetForm,
@@ -412,17 +431,12 @@ pub enum Method {
     Posterior,
 }
 
-impl Against {
-    /// The model as options of a fit, computed as another, with all that is set there.
-    pub fn modelled(&self, like: &ModelOptions) -> ModelOptions {
-        let file = Some(PathBuf::from(&self.model)).filter(|file| file.exists());
-        ModelOptions {
-            preset: file.is_none().then(|| self.model.clone()),
-            model: file,
-            set: like.set.clone(),
-            accuracy: like.accuracy,
-            threads: like.threads,
-        }
+impl ModelOptions {
+    /// The same of another model, a file or a preset.
+    pub fn of_other(&self, model: &str) -> Self {
+        let file = Some(PathBuf::from(model)).filter(|file| file.exists());
+        let preset = file.is_none().then(|| model.to_owned());
+        Self { preset, model: file, ..self.clone() }
     }
 }
 

@@ -8,6 +8,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// A JSON value that stands for an option's text.
@@ -241,6 +242,31 @@ impl FromStr for Against {
     }
 }
 
+/// A further table of a fit, with its model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Also {
+    /// The table.
+    pub data: PathBuf,
+    /// File or preset.
+    pub model: String,
+    /// Case of a table of several.
+    pub case: Option<String>,
+}
+
+impl FromStr for Also {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts =
+            text.split_once('=').filter(|(data, model)| !data.is_empty() && !model.is_empty());
+        let (data, model) = parts
+            .ok_or("expected DATA=MODEL or DATA=MODEL,CASE, such as pushed.csv=pushed.toml")?;
+        let (model, case) =
+            model.split_once(',').map_or((model, None), |(model, case)| (model, Some(case)));
+        Ok(Self { data: data.into(), model: model.to_owned(), case: case.map(str::to_owned) })
+    }
+}
+
 /// The cost of a way to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
@@ -303,6 +329,13 @@ impl Display for Against {
     }
 }
 
+impl Display for Also {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.data.display(), self.model)?;
+        self.case.iter().try_for_each(|case| write!(f, ",{case}"))
+    }
+}
+
 impl Display for Cost {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let way = self.of.to_possible_value();
@@ -327,7 +360,7 @@ macro_rules! texts {
     )*};
 }
 
-texts!(ErrorShots Preload Against);
+texts!(ErrorShots Preload Against Also);
 
 /// Serde of `NAME=VALUE` lists as an object `{"NAME": value}`; `[a, b]` joins two values by the sign
 /// that the option has between them.

@@ -26,6 +26,9 @@ pub(crate) fn with_error(value: f64, error: f64) -> (String, String) {
         }
         false => format!("{value:.decimals$}"),
     };
+    // Nothing is less than 0 by less than a digit.
+    let zero = value.parse() == Ok(0.0);
+    let value = if zero { value.trim_start_matches('-').to_owned() } else { value };
     let error = match decimals > MOST_DECIMALS {
         true => format!("{shown:.1e}"),
         false => format!("{shown:.decimals$}"),

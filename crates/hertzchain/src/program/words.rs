@@ -18,7 +18,8 @@ pub(crate) fn estimate(parameter: &Parameter, value: f64, sd: f64) -> String {
         return format!("{}{unit}, not determined", digits(value, 7));
     }
     // A value that its error dwarfs has the error's size.
-    let power = match value.abs().max(sd).log10().floor() {
+    let most: f64 = format!("{:.1e}", value.abs().max(sd)).parse().unwrap_or(sd);
+    let power = match most.log10().floor() {
         power if (-3.0..5.0).contains(&power) || !power.is_finite() => 0,
         power => power as i32,
     };

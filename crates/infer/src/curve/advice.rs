@@ -3,8 +3,9 @@
 
 use super::candidates::{ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, expected, pushed};
 use super::contacts::three_for_two;
+use super::joint::CurveProblem;
 use super::model::Model;
-use super::problem::CurveProblem;
+use super::problem::MeasuredCurve;
 use crate::data::{Data, Observable};
 use crate::free::Form;
 use crate::identify::{Determined, Scaled, sized};
@@ -183,7 +184,7 @@ impl CurveProblem {
         more: &[Observable],
         errors: &ExpectedErrors,
     ) -> Result<Data, ModelError> {
-        let curve = self.curves(std::slice::from_ref(&fit.point)).remove(0)?;
+        let curve = self.curves()[0].predicted(std::slice::from_ref(&fit.point)).remove(0)?;
         let mut data = self.data().clone();
         for (row, predicted) in data.rows.iter_mut().zip(curve) {
             for of in more {
@@ -237,7 +238,8 @@ impl CurveProblem {
         let flat = |of: Parameter| of.with_prior(Prior::Flat);
         let sized = sized(self.parameters(), &fit.point).into_iter();
         let parameters: Vec<Parameter> = sized.map(flat).collect();
-        let problem = Self::part(model.for_slopes(), data).with_parameters(parameters);
+        let problem =
+            Self::unchecked(parameters, vec![MeasuredCurve::new(model.for_slopes(), data)]);
         let jacobian = jacobian_at(&problem, fit)?;
         Ok(Scaled::with_doubt(problem.parameters(), &jacobian, JUMPING))
     }

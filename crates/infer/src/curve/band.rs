@@ -1,7 +1,7 @@
 //! A fitted curve and how sure it is.
 
-use super::model::{Predicted, Speeds};
-use super::problem::CurveProblem;
+use super::model::Predicted;
+use super::problem::MeasuredCurve;
 use crate::problem::ModelError;
 use crate::{Covariance, Fit};
 
@@ -14,7 +14,7 @@ pub struct FitCurve {
     pub sd: Vec<[f64; 4]>,
 }
 
-impl CurveProblem {
+impl MeasuredCurve {
     /// The curve at a fit's optimum with its standard errors, from central
     /// differences by the fit's own steps, all in one ensemble and ten times as
     /// accurate as the fit, so that no jump of the solver's stands out of the band.
@@ -31,12 +31,11 @@ impl CurveProblem {
         let sides = (0..fit.point.len()).flat_map(|at| [(at, 1.0), (at, -1.0)]);
         let points: Vec<Vec<f64>> =
             std::iter::once(fit.point.clone()).chain(sides.map(moved)).collect();
-        let predicted = self.curves(std::slice::from_ref(&fit.point)).into_iter();
+        let predicted = self.predicted(std::slice::from_ref(&fit.point)).into_iter();
         let predicted =
             predicted.last().unwrap_or_else(|| Err(ModelError("no curve was computed".into())))?;
-        let speeds = Speeds::of_rows(&self.data().speeds_m_s());
-        let finer = self.model().clone().for_slopes();
-        let found = finer.curves(&points, &speeds).into_iter();
+        let finer = self.for_slopes();
+        let found = finer.predicted(&points).into_iter();
         let found: Vec<_> = found.map(Result::ok).collect();
         let slope = |parameter: usize, row: usize, of: usize| {
             let at = |point: usize| found.get(point)?.as_ref()?.get(row)?[of];

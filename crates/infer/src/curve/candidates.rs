@@ -1,7 +1,7 @@
 //! What could be measured next, and how it depends on the parameters.
 
+use super::joint::CurveProblem;
 use super::model::{Model, Speeds};
-use super::problem::CurveProblem;
 use crate::data::{Data, DataRow, Freedom, Observable};
 use crate::free::Form;
 use crate::least_squares::{JUMPING, jacobian_at};
@@ -236,12 +236,12 @@ fn of_way(
     errors: &ExpectedErrors,
 ) -> Result<Vec<Candidate>, ModelError> {
     let data = expected(&model, fit, way, speeds_m_s, errors)?;
-    let problem = CurveProblem::part(model.for_slopes(), data);
+    let problem = CurveProblem::of_curves(vec![(model.for_slopes(), data)], &[]);
     let jacobian = jacobian_at(&problem, fit)?;
     let measured = problem.measured();
     let candidate = |(row, speed): (usize, &f64)| {
         let own = measured.iter().enumerate();
-        let own: Vec<usize> = own.filter(|(_, (of, _))| *of == row).map(|(at, _)| at).collect();
+        let own: Vec<usize> = own.filter(|(_, (_, of, _))| *of == row).map(|(at, _)| at).collect();
         let columns = || jacobian.columns.iter();
         let length =
             |column: &Vec<f64>| norm(&own.iter().map(|at| column[*at]).collect::<Vec<_>>());

@@ -17,11 +17,11 @@ pub use self::{
     advice::{Advice, Prospect},
     band::FitCurve,
     candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, ways},
-    joint::{Joint, Part, Supply},
+    joint::{CurveProblem, Supply},
 };
 pub use self::{
     model::{Model, Predicted, Speeds},
-    problem::CurveProblem,
+    problem::MeasuredCurve,
     surrogate::Surrogate,
 };
 pub(crate) use model::Shooting;

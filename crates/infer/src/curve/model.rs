@@ -45,6 +45,8 @@ pub struct Model {
 #[derive(Clone, Debug)]
 pub(crate) struct Shooting {
     pub(crate) plan: Plan,
+    /// Added to incident and reflected times.
+    pub(crate) delays_s: [f64; 2],
     /// Sensitivity of the wall's sensor over that of the bead's.
     pub(crate) wall_gain: f64,
     /// That of the bead's sensor and its amplifier in V/N.
@@ -123,25 +125,25 @@ impl Model {
         let mut plans = Vec::new();
         let mut part = |one: Shooting| {
             plans.push(one.plan);
-            one.wall_gain
+            (one.wall_gain, one.delays_s)
         };
-        let gains: Vec<Result<Vec<f64>, ModelError>> = planned
+        let readings: Vec<Result<Vec<Reading>, ModelError>> = planned
             .into_iter()
             .map(|planned| Ok(planned?.into_iter().map(&mut part).collect()))
             .collect();
         let mut shots = run_plans(&plans, Control::None, self.set, &|| {}).into_iter();
-        let curve = |gains: Result<Vec<f64>, ModelError>| {
-            let gains = gains?;
+        let curve = |readings: Result<Vec<Reading>, ModelError>| {
+            let readings = readings?;
             // All of the point's shots, so that the next point's are next.
-            let own: Vec<_> = shots.by_ref().take(gains.len()).collect();
-            let rows = own.into_iter().zip(gains).zip(&speeds.at);
-            rows.map(|((shot, gain), (_, speed))| {
-                predicted(&shot.map_err(|error| at(*speed, error))?, gain)
+            let own: Vec<_> = shots.by_ref().take(readings.len()).collect();
+            let rows = own.into_iter().zip(readings).zip(&speeds.at);
+            rows.map(|((shot, reading), (_, speed))| {
+                predicted(&shot.map_err(|error| at(*speed, error))?, reading)
                     .map_err(|error| at(*speed, error))
             })
             .collect()
         };
-        let curves = gains.into_iter().map(curve).collect();
+        let curves = readings.into_iter().map(curve).collect();
         count_done(points.len());
         curves
     }
@@ -174,17 +176,21 @@ impl Model {
         }
         let mut latest: Option<(Settings, Experiment)> = None;
         let mut plan = |&(row, speed_m_s): &(usize, f64)| -> Result<Shooting, ModelError> {
-            let settings = self.numbers.settings(point, speeds.rows, (row, speed_m_s));
+            let at_speed = |speed_m_s| self.numbers.settings(point, speeds.rows, (row, speed_m_s));
+            // Power laws are of the true speed.
+            let true_m_s = speed_m_s * at_speed(speed_m_s).speed_scale;
+            let settings = at_speed(true_m_s);
             let experiment = match latest.take() {
                 Some((same, experiment)) if same == settings => experiment,
                 _ => self.set(&settings).map_err(|error| at(speed_m_s, brief(&error)))?,
             };
-            let planned = Plan::from_experiment(&experiment, Some(speed_m_s));
+            let planned = Plan::from_experiment(&experiment, Some(true_m_s));
             let (plan, _) = planned.map_err(|mistakes| at(speed_m_s, reported(&mistakes)))?;
             let amplifier = experiment.campaign().amplifier;
             let usual_v_n = amplifier.sensitivity_c_n * amplifier.gain_v_c;
             let shooting = Shooting {
                 amplifier,
+                delays_s: settings.delays_s,
                 plan: plan.for_flights().with_accuracy(self.accuracy),
                 wall_gain: settings.wall_gain,
                 sensor_gain_v_n: settings.sensor_gain_v_n.unwrap_or(usual_v_n),
@@ -220,14 +226,17 @@ fn reported(mistakes: &Mistakes) -> String {
     first.map_or_else(|| mistakes.to_string(), ToString::to_string)
 }
 
-/// What a shot shows; `gain` multiplies the wall's signal.
-fn predicted(shot: &Shot, gain: f64) -> Result<Predicted, String> {
+/// What multiplies the wall's signal, and what is added to both times.
+type Reading = (f64, [f64; 2]);
+
+/// What a shot shows.
+fn predicted(shot: &Shot, (gain, delays_s): Reading) -> Result<Predicted, String> {
     let passage = shot.passage.as_ref().map_err(ToString::to_string)?;
     let flight = shot.flight.ok_or("no pulse was seen to pass")?;
     let over_passing = |peak: f64| peak / passage.incident.value;
     Ok([
-        Some(flight.incident_s),
-        flight.reflected_s,
+        Some(flight.incident_s + delays_s[0]),
+        flight.reflected_s.map(|time| time + delays_s[1]),
         Some(gain * over_passing(passage.wall.value)),
         passage.reflected.map(|peak| over_passing(peak.value)),
     ])

@@ -1,77 +1,54 @@
-//! Measured curves against a model's.
+//! A measured curve against a model's.
 
-use super::contacts::three_for_two;
+use super::joint::Supply;
 use super::model::{Model, Predicted, Speeds};
 use super::stencil::Stencil;
 use super::whiten::{Errors, whiten};
+use crate::Parameter;
 use crate::data::{Data, DataRow, Observable};
-use crate::problem::{ModelError, Problem, Residuals, Response};
-use crate::{InferError, Parameter};
+use crate::problem::{ModelError, Residuals, Response};
 use hertzchain_sim::{Fingerprint, Inputs};
 
 /// Relative distance of the speeds around each row's, where there are too
 /// few rows to determine a slope.
 const ASIDE: f64 = 0.02;
 
-/// Times of flight and ratios of peaks against those of a model.
+/// Times of flight and ratios of peaks with a model whose parameters are those of a
+/// [`CurveProblem`](super::CurveProblem).
 ///
 /// Residuals are measured − predicted, made independent within each row:
 /// errors of the speed move all that was measured at it together, by the
 /// slope of the model's own curve.
 #[derive(Clone, Debug)]
-pub struct CurveProblem {
+pub struct MeasuredCurve {
     model: Model,
     data: Data,
-    parameters: Vec<Parameter>,
+    /// Where each of the model's parameters comes from.
+    pub(crate) supplies: Vec<Supply>,
     speeds: Speeds,
     stencils: Vec<Stencil>,
     labels: Vec<String>,
 }
 
-impl CurveProblem {
-    /// A model against data. `parameters` are the model's own, perhaps with other
-    /// starts, bounds and priors.
-    ///
-    /// # Errors
-    /// No parameter, one that cannot be free, or fewer numbers than unknowns.
-    pub fn new(model: Model, data: Data, parameters: Vec<Parameter>) -> Result<Self, InferError> {
-        if parameters.is_empty() {
-            return InferError::input("no parameter is free: name some, such as eta,B");
-        }
-        parameters.iter().try_for_each(Parameter::check)?;
-        let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
-        if data.value_count() < parameters.len() {
-            let advice = three_for_two(&model).unwrap_or_else(|| {
-                "free fewer, or add speeds or reflected times of flight".to_owned()
-            });
-            return InferError::input(format!(
-                "{} has {} measured values for {} free parameters ({}): {advice}",
-                data.file,
-                data.value_count(),
-                parameters.len(),
-                names.join(", ")
-            ));
-        }
-        Ok(Self::unchecked(model, data, parameters))
-    }
-
-    /// Part of a [`Joint`](super::Joint): other parts, or fixed values, may determine
-    /// what these data do not.
-    pub fn part(model: Model, data: Data) -> Self {
-        let parameters = model.numbers().parameters(&data.speeds_m_s());
-        Self::unchecked(model, data, parameters)
-    }
-
-    /// The same problem with other starts, bounds, scales and priors.
-    pub(super) fn with_parameters(mut self, parameters: Vec<Parameter>) -> Self {
-        self.parameters = parameters;
-        self
-    }
-
-    fn unchecked(model: Model, data: Data, parameters: Vec<Parameter>) -> Self {
+impl MeasuredCurve {
+    /// Data and a model whose parameters are the problem's first, in their order.
+    pub fn new(model: Model, data: Data) -> Self {
+        let count = model.numbers().parameters(&data.speeds_m_s()).len();
         let (speeds, stencils) = curve_speeds(&data.speeds_m_s());
         let labels = data.rows.iter().flat_map(row_labels).collect();
-        Self { model, data, parameters, speeds, stencils, labels }
+        Self {
+            model,
+            data,
+            supplies: (0..count).map(Supply::Free).collect(),
+            speeds,
+            stencils,
+            labels,
+        }
+    }
+
+    /// The same with the model's parameters from elsewhere.
+    pub fn supplied(self, supplies: Vec<Supply>) -> Self {
+        Self { supplies, ..self }
     }
 
     /// The model.
@@ -84,60 +61,61 @@ impl CurveProblem {
         &self.data
     }
 
-    /// Of everything that residuals follow from: the experiment as it is
-    /// understood, its free numbers, the data, accuracy and instruction set, this
-    /// build of the program; not where the data lie.
-    pub fn fingerprint(&self) -> Fingerprint {
-        let rows = self.model.inputs("curve problem", &self.parameters);
+    /// The model's parameters at a point of the problem.
+    fn own(&self, point: &[f64]) -> Vec<f64> {
+        let value = |supply: &Supply| match supply {
+            Supply::Fixed(value) => *value,
+            Supply::Free(at) => point.get(*at).copied().unwrap_or(f64::NAN),
+        };
+        self.supplies.iter().map(value).collect()
+    }
+
+    /// Of all that its residuals follow from in a problem with these parameters.
+    pub(super) fn fingerprint(&self, parameters: &[Parameter]) -> Fingerprint {
+        let inputs = self.model.inputs("curve problem", parameters);
+        let inputs = inputs.text("supplies", &format!("{:?}", self.supplies));
         let row = |inputs: Inputs, row: &DataRow| inputs.text("row", &format!("{row:?}"));
-        self.data.rows.iter().fold(rows, row).fingerprint()
+        self.data.rows.iter().fold(inputs, row).fingerprint()
     }
 
-    /// The same problem with curves of another relative accuracy.
-    pub fn with_accuracy(mut self, accuracy: f64) -> Self {
-        self.model = self.model.with_accuracy(accuracy);
-        self
+    pub(super) fn with_accuracy(self, accuracy: f64) -> Self {
+        Self { model: self.model.with_accuracy(accuracy), ..self }
     }
 
-    /// The same problem with other measured values at the same speeds, such as
-    /// those of a simulated repetition.
+    /// The largest relative error of its times of flight at a point of the problem.
     ///
     /// # Errors
-    /// No parameter, one that cannot be free, or fewer numbers than unknowns.
-    pub fn with_data(&self, data: Data) -> Result<Self, InferError> {
-        Self::new(self.model.clone(), data, self.parameters.clone())
-    }
-
-    /// Predictions at the data's speeds, one set of rows a point.
-    pub fn curves(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Predicted>, ModelError>> {
+    /// What is in the way of a shot.
+    pub fn accuracy_reached(&self, point: &[f64]) -> Result<f64, ModelError> {
         let speeds = Speeds::of_rows(&self.data.speeds_m_s());
-        self.model.curves(points, &speeds)
+        self.model.accuracy_reached(&self.own(point), &speeds)
     }
 
-    /// Predictions at all speeds that residuals need, slopes among them.
-    pub(super) fn all_curves(
+    pub(super) fn for_slopes(&self) -> Self {
+        Self { model: self.model.clone().for_slopes(), ..self.clone() }
+    }
+
+    pub(crate) fn with_data(&self, data: Data) -> Self {
+        Self::new(self.model.clone(), data).supplied(self.supplies.clone())
+    }
+
+    /// Predictions at the data's speeds, one set of rows a point of the problem.
+    pub fn predicted(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Predicted>, ModelError>> {
+        self.predicted_at(points, &Speeds::of_rows(&self.data.speeds_m_s()))
+    }
+
+    pub(super) fn predicted_at(
         &self,
         points: &[Vec<f64>],
+        speeds: &Speeds,
     ) -> Vec<Result<Vec<Predicted>, ModelError>> {
-        self.model.curves(points, &self.speeds)
+        let own: Vec<Vec<f64>> = points.iter().map(|point| self.own(point)).collect();
+        self.model.curves(&own, speeds)
     }
 
-    /// Speeds in m/s at which residuals need predictions.
-    pub(super) fn all_speeds_m_s(&self) -> Vec<f64> {
-        self.speeds.at.iter().map(|(_, speed)| *speed).collect()
-    }
-
-    /// Predictions at some of these speeds, by number.
-    pub(super) fn curves_at(
-        &self,
-        points: &[Vec<f64>],
-        which: &[usize],
-    ) -> Vec<Result<Vec<Predicted>, ModelError>> {
-        let speeds = Speeds {
-            at: which.iter().map(|at| self.speeds.at[*at]).collect(),
-            rows: self.speeds.rows,
-        };
-        self.model.curves(points, &speeds)
+    /// Speeds at which residuals need predictions, those of slopes among them.
+    pub(super) fn speeds(&self) -> &Speeds {
+        &self.speeds
     }
 
     /// By how many of its row's errors one curve differs from another at each of these speeds;
@@ -158,21 +136,29 @@ impl CurveProblem {
     }
 
     /// Which row and observable each residual belongs to.
-    pub fn measured(&self) -> Vec<(usize, Observable)> {
+    pub fn measured(&self) -> impl Iterator<Item = (usize, Observable)> + '_ {
         let rows = self.data.rows.iter().enumerate();
-        rows.flat_map(|(at, row)| row.observables().map(move |of| (at, of))).collect()
+        rows.flat_map(|(at, row)| row.observables().map(move |of| (at, of)))
+    }
+
+    /// What its residuals belong to, as messages name it.
+    pub(crate) fn labels(&self) -> &[String] {
+        &self.labels
     }
 
     /// Residuals of a predicted curve.
-    pub(crate) fn residuals_of(&self, curve: &[Predicted]) -> Result<Residuals, ModelError> {
-        let mut residuals = Residuals::default();
+    pub(super) fn residuals_of(
+        &self,
+        curve: &[Predicted],
+        residuals: &mut Residuals,
+    ) -> Result<(), ModelError> {
         for (row, measured) in self.data.rows.iter().enumerate() {
             for (standardised, ln_sigma) in self.row(row, measured, curve)? {
                 residuals.standardised.push(standardised);
                 residuals.ln_sigmas.push(ln_sigma);
             }
         }
-        Ok(residuals)
+        Ok(())
     }
 
     /// Residuals of a row, independent and standardised, with ln σ.
@@ -186,19 +172,23 @@ impl CurveProblem {
         Ok(whiten(&misses, &errors))
     }
 
-    /// What each number of a row, larger by one unit, changes the row's residuals by.
-    fn row_responses(
+    /// What each measured number, larger by one unit, changes the residuals of its row by.
+    pub(super) fn responses(
         &self,
-        row: usize,
-        measured: &DataRow,
         curve: &[Predicted],
-    ) -> Result<Vec<Vec<f64>>, ModelError> {
-        let (misses, errors) = self.misses(row, measured, curve)?;
-        let unit = |at: usize| {
-            let one: Vec<f64> = (0..misses.len()).map(|k| f64::from(u8::from(k == at))).collect();
-            whiten(&one, &errors).into_iter().map(|(change, _)| change).collect()
-        };
-        Ok((0..misses.len()).map(unit).collect())
+        all: &mut Vec<Response>,
+    ) -> Result<(), ModelError> {
+        for (row, measured) in self.data.rows.iter().enumerate() {
+            let (misses, errors) = self.misses(row, measured, curve)?;
+            let (first, count) = (all.len(), misses.len());
+            let unit = |at: usize| {
+                let one: Vec<f64> = (0..count).map(|k| f64::from(u8::from(k == at))).collect();
+                let changes = whiten(&one, &errors).into_iter().enumerate();
+                changes.map(|(k, (change, _))| (first + k, change)).collect()
+            };
+            all.extend((0..count).map(unit));
+        }
+        Ok(())
     }
 
     /// What a row's numbers miss the model by, and their errors.
@@ -257,37 +247,4 @@ fn row_labels(row: &DataRow) -> Vec<String> {
     let speed: f64 = format!("{:.3e}", row.speed_m_s.value).parse().unwrap_or(row.speed_m_s.value);
     let label = |of: Observable| format!("line {}, {speed} m/s, {}", row.line, of.name());
     row.observables().map(label).collect()
-}
-
-impl Problem for CurveProblem {
-    fn parameters(&self) -> &[Parameter] {
-        &self.parameters
-    }
-
-    fn residual_count(&self) -> usize {
-        self.data.value_count()
-    }
-
-    fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
-        let curves = self.all_curves(points);
-        curves.into_iter().map(|curve| self.residuals_of(&curve?)).collect()
-    }
-
-    fn responses(&self, point: &[f64]) -> Result<Option<Vec<Response>>, ModelError> {
-        let mut curves = self.all_curves(&[point.to_vec()]);
-        let curve = curves.pop().unwrap_or_else(|| Err(ModelError::default()))?;
-        let mut all = Vec::new();
-        for (row, measured) in self.data.rows.iter().enumerate() {
-            let first = all.len();
-            let own = self.row_responses(row, measured, &curve)?;
-            all.extend(own.into_iter().map(|changes| -> Response {
-                changes.into_iter().enumerate().map(|(k, change)| (first + k, change)).collect()
-            }));
-        }
-        Ok(Some(all))
-    }
-
-    fn residual_label(&self, index: usize) -> String {
-        self.labels.get(index).cloned().unwrap_or_default()
-    }
 }

@@ -1,9 +1,8 @@
 //! Whether speeds are in another unit than m/s, by what times of flight they make.
 
 use super::model::Speeds;
-use super::problem::CurveProblem;
+use super::problem::MeasuredCurve;
 use crate::data::Observable;
-use crate::problem::Problem;
 
 /// A smaller unit of speed, and how many make 1 m/s.
 const SMALLER: [(&str, f64); 2] = [("cm/s", 100.0), ("mm/s", 1000.0)];
@@ -13,12 +12,13 @@ const SMALLER: [(&str, f64); 2] = [("cm/s", 100.0), ("mm/s", 1000.0)];
 /// the speed by about its fifth root.
 const NEAR: f64 = 0.2;
 
-impl CurveProblem {
+impl MeasuredCurve {
     /// The unit that speeds seem to be in, if it is not m/s: the model, where its parameters
     /// start, has the measured times of flight at speeds that many times slower, and not at
     /// those that stand in the table.
-    pub fn other_unit_of_speed(&self) -> Option<&'static str> {
-        let near = |factor: f64| self.middle_miss(factor).is_some_and(|miss| miss.abs() < NEAR);
+    pub fn other_unit_of_speed(&self, start: &[f64]) -> Option<&'static str> {
+        let near =
+            |factor: f64| self.middle_miss(start, factor).is_some_and(|miss| miss.abs() < NEAR);
         if near(1.0) {
             return None;
         }
@@ -27,10 +27,9 @@ impl CurveProblem {
     }
 
     /// Median of ln(measured/predicted) of incident times at speeds so many times slower.
-    fn middle_miss(&self, factor: f64) -> Option<f64> {
-        let start: Vec<f64> = self.parameters().iter().map(|p| p.start).collect();
+    fn middle_miss(&self, start: &[f64], factor: f64) -> Option<f64> {
         let speeds: Vec<f64> = self.data().speeds_m_s().iter().map(|v| v / factor).collect();
-        let curve = self.model().curves(&[start], &Speeds::of_rows(&speeds)).pop()?.ok()?;
+        let curve = self.predicted_at(&[start.to_vec()], &Speeds::of_rows(&speeds)).pop()?.ok()?;
         let miss = |(row, predicted): (&crate::DataRow, &super::Predicted)| {
             let measured = row.value(Observable::Incident)?.value;
             Some((measured / predicted[Observable::Incident.index()]?).ln())

@@ -133,7 +133,6 @@ impl Data {
         let reader = Reader { file, defaults: &selection.defaults, columns };
         let rows = records.iter().filter_map(|record| reader.row(record).transpose());
         let mut rows: Vec<DataRow> = rows.collect::<Result<_, _>>()?;
-        reader.check_repeated(&rows)?;
         rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
         match rows.is_empty() {
             true => InferError::input(format!(
@@ -523,22 +522,6 @@ impl Reader<'_> {
             }
         }
         Ok(None)
-    }
-
-    /// Rejects one speed twice: means of shots are not ours to take.
-    fn check_repeated(&self, rows: &[DataRow]) -> Result<(), InferError> {
-        for (at, row) in rows.iter().enumerate() {
-            let speed = row.speed_m_s.value;
-            if let Some(first) = rows[..at].iter().find(|e| e.speed_m_s.value == speed) {
-                let what = format!(
-                    "the speed {speed} m/s stands in line {} too; expected one row a speed, as \
-                     `hertzchain measure` writes them in speeds.csv",
-                    first.line
-                );
-                return self.wrong(row.line, &self.columns.speed.value, &what);
-            }
-        }
-        Ok(())
     }
 }
 

@@ -9,7 +9,7 @@
 mod name;
 mod start;
 
-use crate::{InferError, Parameter};
+use crate::{InferError, Parameter, Prior};
 use hertzchain_experiment::{Experiment, Reference};
 pub use name::SHORT_NAMES;
 use name::Target;
@@ -38,7 +38,13 @@ pub struct FreeNumber {
     start: (f64, f64),
     bounds: (f64, f64),
     reference: Option<Reference>,
+    /// Standard deviation of a normal prior about the start.
+    prior_sd: Option<f64>,
 }
+
+/// A prior's standard deviation is at most this part of what counts as the size of a change: a
+/// parameter is not undetermined that its prior determines.
+const PART_OF_SIZE: f64 = 0.5;
 
 impl FreeNumber {
     /// The number of this name, as written on the command line.
@@ -79,7 +85,24 @@ impl FreeNumber {
             unit: found.unit,
             target: found.target,
             start,
+            prior_sd: None,
         })
+    }
+
+    /// A nuisance parameter: a number that is known to this standard deviation, from elsewhere than
+    /// the data.
+    ///
+    /// # Errors
+    /// As [`find`](Self::find); a number that depends on speed.
+    pub fn systematic(experiment: &Experiment, name: &str, sd: f64) -> Result<Self, InferError> {
+        let found = Self::find(experiment, name, None)?;
+        match found.form {
+            Form::Constant => Ok(Self { prior_sd: Some(sd), ..found }),
+            _ => InferError::input(format!(
+                "{name} depends on speed: a systematic error is of one number; free {name} and say what is known \
+                 of its parameters (--free, --prior)"
+            )),
+        }
     }
 
     /// The name as asked, without its form.
@@ -96,8 +119,13 @@ impl FreeNumber {
     pub fn parameters(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
         let (value, exponent) = self.start;
         let (lower, upper) = self.bounds;
-        let one =
-            |name: &str, start: f64| Parameter::new(name, &self.unit, start).within(lower, upper);
+        let one = |name: &str, start: f64| {
+            let sd = self.prior_sd;
+            let scale = start::scale(&self.target, start).max(sd.unwrap_or(0.0) / PART_OF_SIZE);
+            let prior = sd.map_or(Prior::Flat, |sd| Prior::Normal { mean: start, sd });
+            let parameter = Parameter::new(name, &self.unit, start).within(lower, upper);
+            Parameter { scale, ..parameter.with_prior(prior) }
+        };
         match self.form {
             Form::Constant => vec![one(&self.name, value)],
             Form::PowerLaw => {
@@ -161,7 +189,8 @@ pub fn same_number(one: (&Experiment, &str), other: (&Experiment, &str)) -> bool
     matches!((target(one), target(other)), (Ok(one), Ok(other)) if one == other)
 }
 
-/// Speeds in m/s with as many digits as distinguish them, four at the least.
+/// Speeds in m/s with as many digits as distinguish them, four at the least; one that comes again
+/// has a number behind it.
 fn apart(speeds_m_s: &[f64]) -> Vec<String> {
     let rounded = |digits: usize| -> Vec<String> {
         let short = |speed: &f64| {
@@ -170,12 +199,19 @@ fn apart(speeds_m_s: &[f64]) -> Vec<String> {
         };
         speeds_m_s.iter().map(short).collect()
     };
-    let distinct = |texts: &Vec<String>| {
-        let once: HashSet<&String> = texts.iter().collect();
-        once.len() == texts.len()
-    };
+    let different = speeds_m_s.iter().map(|speed| speed.to_bits()).collect::<HashSet<_>>().len();
+    let distinct = |texts: &Vec<String>| texts.iter().collect::<HashSet<_>>().len() == different;
     let mut all = (4..=MOST_DIGITS).map(rounded);
-    all.find(distinct).unwrap_or_else(|| rounded(MOST_DIGITS))
+    let texts = all.find(distinct).unwrap_or_else(|| rounded(MOST_DIGITS));
+    let named = |(at, text): (usize, &String)| match texts[..at]
+        .iter()
+        .filter(|before| *before == text)
+        .count()
+    {
+        0 => text.clone(),
+        before => format!("{text}({})", before + 1),
+    };
+    texts.iter().enumerate().map(named).collect()
 }
 
 /// Digits that distinguish any two numbers.
@@ -195,6 +231,10 @@ pub(crate) struct Settings {
     /// That of the bead's sensor with its amplifier in V/N, if it is not the
     /// experiment's.
     pub(crate) sensor_gain_v_n: Option<f64>,
+    /// Added to incident and reflected times.
+    pub(crate) delays_s: [f64; 2],
+    /// True speed over the one stated.
+    pub(crate) speed_scale: f64,
 }
 
 impl FreeNumbers {
@@ -236,7 +276,7 @@ impl FreeNumbers {
         speeds: usize,
         (row, speed_m_s): (usize, f64),
     ) -> Settings {
-        let mut settings = Settings { wall_gain: 1.0, ..Settings::default() };
+        let mut settings = Settings { wall_gain: 1.0, speed_scale: 1.0, ..Settings::default() };
         let mut rest = point;
         for number in &self.0 {
             let count = number.parameter_count(speeds).min(rest.len());

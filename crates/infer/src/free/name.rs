@@ -5,7 +5,7 @@ use crate::InferError;
 use hertzchain_experiment::{Experiment, NamedNumber};
 
 /// Short names: what each stands for, and the end of its path.
-pub const SHORT_NAMES: [(&str, &str, &str); 12] = [
+pub const SHORT_NAMES: [(&str, &str, &str); 17] = [
     ("Y", "Young modulus", "young_modulus"),
     ("nu", "Poisson ratio", "poisson_ratio"),
     ("eta", "viscosity", "shear_viscosity"),
@@ -22,6 +22,15 @@ pub const SHORT_NAMES: [(&str, &str, &str); 12] = [
     (WALL_GAIN, "sensitivity of the wall's sensor over that of the bead's", ""),
     (SENSOR_GAIN, "sensitivity of the bead's sensor with its amplifier", ""),
     ("low_pass", "corner of the amplifier's low-pass", LOW_PASS),
+    (DELAYS[0].0, "common delay of incident times", ""),
+    (DELAYS[1].0, "common delay of reflected times", ""),
+    (
+        DELAYS[2].0,
+        "delay of the wall's channel behind the bead's, added to incident times and taken from reflected",
+        "",
+    ),
+    (SPEED_SCALE, "true speeds over those of the table", ""),
+    (RADIUS_ERROR, "common error of all radii", ""),
 ];
 
 /// The corner of the amplifier's low-pass.
@@ -30,6 +39,12 @@ pub(super) const LOW_PASS: &str = "campaign.amplifier.low_pass";
 /// Numbers of the instruments, not of the chain.
 const WALL_GAIN: &str = "wall_gain";
 const SENSOR_GAIN: &str = "sensor_gain";
+const SPEED_SCALE: &str = "speed_scale";
+const RADIUS_ERROR: &str = "radius_error";
+
+/// Delays, and what a delay of 1 s adds to incident and reflected times.
+const DELAYS: [(&str, [f64; 2]); 3] =
+    [("delay", [1.0, 0.0]), ("reflected_delay", [0.0, 1.0]), ("skew", [1.0, -1.0])];
 
 /// Where a free number goes.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +57,12 @@ pub(super) enum Target {
     WallGain,
     /// Sensitivity of the bead's sensor with its amplifier in V/N.
     SensorGain,
+    /// Added to incident and reflected times, times these.
+    Delay([f64; 2]),
+    /// True speeds over those of the table.
+    SpeedScale,
+    /// Added to all radii: their paths, and radii in m.
+    Radii(Vec<(String, f64)>),
 }
 
 impl Target {
@@ -50,7 +71,7 @@ impl Target {
         match self {
             Self::Number(path) => Some(path),
             Self::Scaled { prefactor, .. } => prefactor.strip_suffix(".prefactor"),
-            Self::WallGain | Self::SensorGain => None,
+            _ => None,
         }
     }
 
@@ -64,6 +85,15 @@ impl Target {
             }
             Self::WallGain => settings.wall_gain = value,
             Self::SensorGain => settings.sensor_gain_v_n = Some(value),
+            Self::SpeedScale => settings.speed_scale = value,
+            Self::Delay(shares) => {
+                let pairs = settings.delays_s.iter_mut().zip(shares);
+                pairs.for_each(|(sum, share)| *sum += share * value);
+            }
+            Self::Radii(all) => {
+                let moved = |(path, radius_m): &(String, f64)| (path.clone(), radius_m + value);
+                settings.numbers.extend(all.iter().map(moved));
+            }
         }
     }
 }
@@ -78,20 +108,8 @@ pub(super) struct Found {
 
 /// The number of a short name, a path or an end of one.
 pub(super) fn find(experiment: &Experiment, name: &str) -> Result<Found, InferError> {
-    if name == WALL_GAIN {
-        return Ok(Found {
-            target: Target::WallGain,
-            unit: String::new(),
-            given: Some((1.0, 0.0)),
-        });
-    }
-    if name == SENSOR_GAIN {
-        let amplifier = &experiment.campaign().amplifier;
-        return Ok(Found {
-            target: Target::SensorGain,
-            unit: "V/N".to_owned(),
-            given: Some((amplifier.sensitivity_c_n * amplifier.gain_v_c, 0.0)),
-        });
+    if let Some((target, unit, usual)) = of_rig(experiment, name) {
+        return Ok(Found { target, unit: unit.to_owned(), given: Some((usual, 0.0)) });
     }
     let (owner, last) = match name.rsplit_once('.') {
         None => (None, name),
@@ -127,6 +145,24 @@ fn of_place(name: &str, place: NamedNumber) -> Result<Found, InferError> {
             target: Target::Number(place.path),
         }),
     }
+}
+
+/// A number of the rig that no path leads to, with its unit and usual value.
+fn of_rig(experiment: &Experiment, name: &str) -> Option<(Target, &'static str, f64)> {
+    let delay = DELAYS.iter().find(|(delay, _)| *delay == name);
+    Some(match name {
+        WALL_GAIN => (Target::WallGain, "", 1.0),
+        SENSOR_GAIN => {
+            let amplifier = &experiment.campaign().amplifier;
+            (Target::SensorGain, "V/N", amplifier.sensitivity_c_n * amplifier.gain_v_c)
+        }
+        SPEED_SCALE => (Target::SpeedScale, "", 1.0),
+        RADIUS_ERROR => {
+            let radii = experiment.places().into_iter().filter(|p| p.path.ends_with(".radius"));
+            (Target::Radii(radii.filter_map(|p| Some((p.path, p.value?))).collect()), "m", 0.0)
+        }
+        _ => (Target::Delay(delay?.1), "s", 0.0),
+    })
 }
 
 /// No unit is no text here, not "1".

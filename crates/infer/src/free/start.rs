@@ -59,8 +59,23 @@ fn of_law(path: &str) -> Option<(f64, f64)> {
     Some((least, most))
 }
 
+/// Delays and errors of radii of so many s and m matter.
+const MICRO: f64 = 1e-6;
+
+/// A change of a number that matters, from its value at the start.
+pub(super) fn scale(target: &Target, start: f64) -> f64 {
+    match target {
+        Target::Delay(_) | Target::Radii(_) => MICRO,
+        _ if start == 0.0 => 1.0,
+        _ => start.abs(),
+    }
+}
+
 /// What a number may be, as far as its name says.
 pub(super) fn bounds(found: &Found) -> (f64, f64) {
+    if matches!(found.target, Target::Delay(_) | Target::Radii(_)) {
+        return (f64::NEG_INFINITY, f64::INFINITY);
+    }
     let Some(path) = found.target.path() else {
         return (f64::MIN_POSITIVE, f64::INFINITY);
     };

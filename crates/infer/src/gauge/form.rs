@@ -5,7 +5,7 @@
 
 use super::rows::{SAME, TIMES_DRY, shifts};
 use super::{Gauge, LEAST_PROBABILITY, Match, NuisanceParameter, Oil, Verdict};
-use crate::curve::{CurveProblem, Joint, Part, Supply};
+use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::Data;
 use crate::{Covariance, Fit, Fitting, Goodness, Identifiability, InferError};
 use crate::{Parameter, Problem, fit};
@@ -135,7 +135,7 @@ impl Gauge {
         let about = |error: InferError| error.about("the wet curve");
         let minima = self.law_minima(&wet).map_err(about)?;
         let start = [&self.dry_fit.point[..], &minima[0].point].concat();
-        let joint = self.both_curves(self.dry.clone(), wet, &start);
+        let joint = self.both_curves(self.dry_curve(), wet, &start);
         let fit_result = fit(&joint, &accurate()).map_err(about)?;
         let mut form = self.form(&joint, &fit_result);
         form.others = others(&minima);
@@ -143,21 +143,19 @@ impl Gauge {
     }
 
     /// Fits of the wet curve with the dry contacts' numbers fixed, best first, at least one.
-    fn law_minima(&self, wet: &CurveProblem) -> Result<Vec<Fit>, InferError> {
+    fn law_minima(&self, wet: &MeasuredCurve) -> Result<Vec<Fit>, InferError> {
         let [stiffness, relaxation] = self.dry_contact;
         let dry = &self.dry_fit.point[..self.common()];
         let own = self.wet_own(&self.data.speeds_m_s());
-        let laws = &wet.parameters()[dry.len() + own.len()..];
+        let laws = &self.laws(wet);
         let free = (0..own.len() + LAWS).map(Supply::Free);
-        let part = Part {
-            problem: wet.clone(),
-            supplies: dry.iter().copied().map(Supply::Fixed).chain(free).collect(),
-        };
+        let supplies = dry.iter().copied().map(Supply::Fixed).chain(free).collect();
+        let curve = wet.clone().supplied(supplies);
         let from = |times: &f64| {
             let start = [stiffness, 0.0, times * relaxation, 0.0];
             let laws = started(laws, &start);
             let parameters = own.iter().cloned().chain(laws).collect();
-            fit(&Joint::new(parameters, vec![part.clone()]), &rough())
+            fit(&CurveProblem::unchecked(parameters, vec![curve.clone()]), &rough())
         };
         let fits = TIMES_DRY.iter().step_by(2).map(from);
         let (found, failed): (Vec<_>, Vec<_>) = fits.partition(Result::is_ok);
@@ -171,23 +169,28 @@ impl Gauge {
 
     /// Both curves: the dry curve's parameters, the wet chain's nuisance parameters and both laws,
     /// which start at these values.
-    fn both_curves(&self, dry: CurveProblem, wet: CurveProblem, start: &[f64]) -> Joint {
-        let count = dry.parameters().len();
+    fn both_curves(&self, dry: MeasuredCurve, wet: MeasuredCurve, start: &[f64]) -> CurveProblem {
+        let count = self.dry_fit.point.len();
         let own = self.wet_own(&wet.data().speeds_m_s());
-        let laws = &wet.parameters()[self.common() + own.len()..];
-        let fit_result = dry.parameters().iter().chain(&own).zip(start);
+        let laws = &self.laws(&wet);
+        let fit_result = self.dry.parameters().iter().chain(&own).zip(start);
         let mut parameters: Vec<Parameter> = fit_result
             .map(|(parameter, value)| Parameter { start: *value, ..parameter.clone() })
             .collect();
         parameters.extend(started(laws, &start[count + own.len()..]));
         let of_wet = (0..self.common()).chain(count..parameters.len());
-        let wet_part = Part { supplies: of_wet.map(Supply::Free).collect(), problem: wet };
-        let dry_part = Part { supplies: (0..count).map(Supply::Free).collect(), problem: dry };
-        Joint::new(parameters, vec![dry_part, wet_part])
+        let wet = wet.supplied(of_wet.map(Supply::Free).collect());
+        CurveProblem::unchecked(parameters, vec![dry, wet])
+    }
+
+    /// Parameters of both laws, the last of the wet model's.
+    fn laws(&self, wet: &MeasuredCurve) -> Vec<Parameter> {
+        let all = wet.model().numbers().parameters(&wet.data().speeds_m_s());
+        all[all.len() - LAWS..].to_vec()
     }
 
     /// Laws and their errors of a fit to both curves.
-    fn form(&self, joint: &Joint, fit_result: &Fit) -> PowerForm {
+    fn form(&self, joint: &CurveProblem, fit_result: &Fit) -> PowerForm {
         let parameters = joint.parameters();
         let (dry, first) = (self.dry_fit.point.len(), parameters.len() - LAWS);
         let covariance = Covariance::new(parameters, fit_result);
@@ -245,12 +248,12 @@ impl Gauge {
         &self,
         form: &PowerForm,
         oil: &Oil,
-        (each, power): (&CurveProblem, &CurveProblem),
+        (each, power): (&MeasuredCurve, &MeasuredCurve),
     ) -> Result<PowerForm, InferError> {
         let (dry, own) = form.beside_laws.split_at(self.dry_fit.point.len());
         let [stiffness, relaxation] = self.contacts_of(oil);
         let point = [&dry[..self.common()], own, &stiffness, &relaxation].concat();
-        let wet = CurveProblem::part(power.model().clone(), computed(each, &point)?);
+        let wet = power.with_data(computed(each, &point)?);
         let speeds = self.data.speeds_m_s();
         let mut start = form.beside_laws.clone();
         for values in [&stiffness, &relaxation] {
@@ -258,7 +261,8 @@ impl Gauge {
             let law = law.map_err(|error| InferError::Input(error.to_string()))?;
             start.extend([law.prefactor, law.exponent]);
         }
-        let dry = self.dry.with_data(computed(&self.dry, dry)?)?;
+        let own = self.dry_curve();
+        let dry = own.with_data(computed(&own, dry)?);
         let joint = self.both_curves(dry, wet, &start);
         Ok(self.form(&joint, &fit(&joint, &accurate())?))
     }
@@ -314,10 +318,10 @@ fn distance(oil: &Oil, form: &PowerForm, expected: &PowerForm) -> Result<Match, 
     })
 }
 
-/// A problem's data with the values that its model computes, and the measured ones' errors.
-fn computed(problem: &CurveProblem, point: &[f64]) -> Result<Data, InferError> {
-    let curve = problem.curves(&[point.to_vec()]).remove(0)?;
-    let mut data = problem.data().clone();
+/// A curve's data with the values that its model computes, and the measured ones' errors.
+fn computed(of: &MeasuredCurve, point: &[f64]) -> Result<Data, InferError> {
+    let curve = of.predicted(&[point.to_vec()]).remove(0)?;
+    let mut data = of.data().clone();
     for (row, computed) in data.rows.iter_mut().zip(curve) {
         for (value, computed) in row.values.iter_mut().zip(computed) {
             let Some(value) = value else { continue };

@@ -16,12 +16,13 @@ pub use self::{
     scan::Scan,
 };
 
-use crate::curve::{CurveProblem, Joint, Model, Part, Supply};
+use crate::curve::{CurveProblem, MeasuredCurve, Model, Supply};
 use crate::data::{Data, Observable};
 use crate::free::{FreeNumber, FreeNumbers};
 use crate::goodness::chi_square_of;
 use crate::{
-    Covariance, Fit, Fitting, Goodness, InferError, Parameter, Problem, fit, largest_residual,
+    Covariance, Fit, Fitting, Goodness, InferError, Parameter, Prior, Problem, fit,
+    largest_residual,
 };
 use hertzchain_experiment::Experiment;
 use hertzchain_measure::signal::{ChiSquare, FitError, PowerLaw, power_law};
@@ -34,6 +35,8 @@ pub struct Chains<'a> {
     pub wet: &'a Experiment,
     /// Free numbers of the dry contacts, by names that both experiments know.
     pub free: &'a [String],
+    /// Systematic errors that both curves share, each with its standard deviation in SI.
+    pub systematic: &'a [(String, f64)],
     /// Nuisance parameters that each chain has for itself, known to both experiments by the same
     /// names: the load of a tapped row, which friction holds and no model predicts.
     pub own: &'a [String],
@@ -72,10 +75,13 @@ impl Gauge {
     /// dry fit.
     pub fn new(chains: &Chains<'_>, dry: Data, wet: Data) -> Result<Self, InferError> {
         let model = |experiment: &Experiment, more: &[&str]| -> Result<Model, InferError> {
-            let names = chains.free.iter().chain(chains.own).map(String::as_str);
-            let numbers = names.chain(more.iter().copied());
-            let numbers = numbers.map(|name| FreeNumber::find(experiment, name, None));
-            let numbers = FreeNumbers::new(numbers.collect::<Result<_, _>>()?)?;
+            let find = |name: &str| FreeNumber::find(experiment, name, None);
+            let free = chains.free.iter().map(|name| find(name));
+            let known = chains.systematic.iter();
+            let known = known.map(|(name, sd)| FreeNumber::systematic(experiment, name, *sd));
+            let own = chains.own.iter().map(|name| find(name));
+            let all = free.chain(known).chain(own).chain(more.iter().map(|name| find(name)));
+            let numbers = FreeNumbers::new(all.collect::<Result<_, _>>()?)?;
             Ok(Model::new(experiment, numbers)?.with_accuracy(chains.accuracy))
         };
         let Some(radius_m) = wet_radius_m(chains.wet) else {
@@ -111,6 +117,10 @@ impl Gauge {
     /// The dry curve against its model.
     pub fn dry(&self) -> &CurveProblem {
         &self.dry
+    }
+
+    fn dry_curve(&self) -> MeasuredCurve {
+        self.dry.curves()[0].clone()
     }
 
     /// How well the dry curve follows its model.
@@ -307,7 +317,7 @@ impl Gauge {
     }
 
     /// The wet curve with K and A that depend on speed as `power` or `each` says.
-    fn wet_in_form(&self, form: &str) -> Result<CurveProblem, InferError> {
+    fn wet_in_form(&self, form: &str) -> Result<MeasuredCurve, InferError> {
         let experiment = self.wet.experiment();
         let own = self.wet.numbers().as_slice();
         let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();
@@ -317,7 +327,7 @@ impl Gauge {
         }
         let model = Model::new(experiment, FreeNumbers::new(numbers)?)?;
         let model = model.with_accuracy(self.wet.accuracy);
-        Ok(CurveProblem::part(model, self.data.clone()))
+        Ok(MeasuredCurve::new(model, self.data.clone()))
     }
 
     /// K in N/m^{3/2} and A in s that an oil gives at the speeds of the wet data.
@@ -327,20 +337,18 @@ impl Gauge {
         [stiffness, relaxation]
     }
 
-    fn compare(&self, oil: &Oil, wet: &CurveProblem) -> Result<Match, InferError> {
+    fn compare(&self, oil: &Oil, wet: &MeasuredCurve) -> Result<Match, InferError> {
         let count = self.dry_fit.point.len();
         let speeds = self.data.speeds_m_s();
         let [stiffness, relaxation] = self.contacts_of(oil);
         let own = self.wet_own(&speeds);
         let of_wet = (0..self.common()).chain(count..count + own.len()).map(Supply::Free);
         let contacts = stiffness.into_iter().chain(relaxation).map(Supply::Fixed);
-        let supplies = of_wet.chain(contacts).collect();
-        let wet_part = Part { problem: wet.clone(), supplies };
-        let supplies = (0..count).map(Supply::Free).collect();
-        let dry_part = Part { problem: self.dry.clone(), supplies };
+        let wet = wet.clone().supplied(of_wet.chain(contacts).collect());
         let pairs = self.dry.parameters().iter().zip(&self.dry_fit.point);
         let dry = pairs.map(|(parameter, value)| Parameter { start: *value, ..parameter.clone() });
-        let joint = Joint::new(dry.chain(own.clone()).collect(), vec![dry_part, wet_part]);
+        let parameters = dry.chain(own.clone()).collect();
+        let joint = CurveProblem::unchecked(parameters, vec![self.dry_curve(), wet]);
         // Two or three numbers that start at their dry values, to a hundredth of what would change a
         // verdict.
         let how = Fitting { tolerance: 0.01, iterations: 20, ..Fitting::default() };
@@ -360,9 +368,19 @@ impl Gauge {
                 own.len()
             ));
         }
-        let Some(chi_square) = chi_square_of(residuals.iter().copied(), own.len()) else {
+        let chi_square = match joint.parameters().iter().any(|p| p.prior != Prior::Flat) {
+            false => chi_square_of(residuals.iter().copied(), own.len()),
+            // What the wet curve makes worse: a shared error must not be pulled for nothing.
+            true => {
+                let rise = whole_chi_square(&joint, &fit_result)
+                    - whole_chi_square(&self.dry, &self.dry_fit);
+                ChiSquare::of(rise.max(0.0), residuals.len() - own.len())
+            }
+        };
+        let Some(chi_square) = chi_square else {
             return InferError::input("its distance is not finite");
         };
+        let label = joint.curves()[1].labels()[largest.residual - first].clone();
         let own = own.into_iter().enumerate().map(|(at, parameter)| NuisanceParameter {
             parameter,
             value: fit_result.point[count + at],
@@ -372,10 +390,17 @@ impl Gauge {
             oil: oil.name.clone(),
             distance: (chi_square.value / chi_square.freedom as f64).sqrt(),
             chi_square,
-            largest: (wet.residual_label(largest.residual - first), largest.sigmas),
+            largest: (label, largest.sigmas),
             own: own.collect(),
         })
     }
+}
+
+/// Chi-square of data and priors.
+fn whole_chi_square(problem: &CurveProblem, fit: &Fit) -> f64 {
+    let priors = problem.parameters().iter().zip(&fit.point);
+    let priors = priors.filter_map(|(parameter, value)| parameter.prior.residual(*value));
+    fit.chi_square() + priors.map(|r| r * r).sum::<f64>()
 }
 
 /// A power law of speed through values that share a part of their errors.

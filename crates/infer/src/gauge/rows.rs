@@ -1,7 +1,7 @@
 //! K and A of the wet contacts, speed by speed.
 
 use super::{CONTACT, Gauge, Scan};
-use crate::curve::{CurveProblem, Joint, Part, Supply};
+use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::{Data, Observable};
 use crate::goodness::LEAST_BY_CHANCE;
 use crate::linear::{combine, dot, least_squares};
@@ -254,7 +254,7 @@ impl Gauge {
         row: usize,
         (free, at): (Free, [f64; 2]),
         dry: &[f64],
-    ) -> Joint {
+    ) -> CurveProblem {
         let data = Data { rows: vec![self.data.rows[row].clone()], ..self.data.clone() };
         let numbers = self.wet.numbers().as_slice();
         let contact = numbers[numbers.len() - CONTACT..].iter();
@@ -278,8 +278,8 @@ impl Gauge {
             Free::StiffnessAlone => Supply::Fixed(at[1]),
         });
         start.truncate(if free == Free::Both { 2 } else { 1 });
-        let problem = CurveProblem::part(self.wet.clone(), data);
-        Joint::new(start, vec![Part { problem, supplies }])
+        let curve = MeasuredCurve::new(self.wet.clone(), data).supplied(supplies);
+        CurveProblem::unchecked(start, vec![curve])
     }
 
     /// What a change of A is worth in K, from derivatives of the one residual.
@@ -565,6 +565,9 @@ fn smoothest(rows: &[Row]) -> Vec<Chosen> {
     (0..rows.len()).map(chosen).collect()
 }
 
+/// Distance in ln speed by which two rows of one speed count as apart.
+const USUALLY_APART: f64 = 0.1;
+
 /// The way of least cost, and that (dynamic programming over neighbours); `None` of fewer than three
 /// rows, or where one has no solution.
 fn straightest(rows: &[Row]) -> Option<(f64, Vec<usize>)> {
@@ -573,7 +576,8 @@ fn straightest(rows: &[Row]) -> Option<(f64, Vec<usize>)> {
     }
     let slope = |row: usize, before: usize, at: usize| {
         let [(v0, from), (v1, to)] = [&rows[row - 1], &rows[row]];
-        (to[at] - from[before]) / (v1 - v0)
+        let apart = if v1 > v0 { v1 - v0 } else { USUALLY_APART };
+        (to[at] - from[before]) / apart
     };
     let numbers = |row: usize| 0..rows[row].1.len();
     let first = numbers(0).flat_map(|a| numbers(1).map(move |b| (0.0, vec![a, b])));

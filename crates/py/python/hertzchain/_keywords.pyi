@@ -80,6 +80,8 @@ class FitOptions(TypedDict, total=False):
     bounds: Mapping[str, Any] | None
     prior: Mapping[str, Any] | None
     scale: Mapping[str, Any] | None
+    systematic: Mapping[str, Any] | None
+    own: Quantity | Iterable[Quantity] | None
     method: Literal["covariance", "profile", "posterior"]
     against: Mapping[str, Any] | None
     steps: Quantity
@@ -105,6 +107,7 @@ class DesignOptions(TypedDict, total=False):
     bounds: Mapping[str, Any] | None
     prior: Mapping[str, Any] | None
     scale: Mapping[str, Any] | None
+    systematic: Mapping[str, Any] | None
     target: Quantity | Iterable[Quantity] | None
     speeds: Quantity | None
     preloads: Quantity | Iterable[Quantity]
@@ -126,6 +129,7 @@ class GaugeOptions(TypedDict, total=False):
     dry_model: Path | None
     dry_free: Quantity | Iterable[Quantity]
     own: Quantity | Iterable[Quantity] | None
+    systematic: Mapping[str, Any] | None
     form: Literal["each", "power"]
     oils: Path | None
     accuracy: Quantity

@@ -32,6 +32,7 @@ def fit(
     model: Experiment | options.Path_ | None = None,
     *,
     free: str | Iterable[str],
+    also: Iterable[tuple[Any, Experiment | options.Path_]] = (),
     folder: options.Path_ | None = None,
     client: Client | None = None,
     points: int | None = None,
@@ -50,18 +51,19 @@ def fit(
         masked, is missing. Or recordings of any format that `measure` reads, files or folders of
         them: then whole pulses are fitted, sample by sample.
     model : Experiment or str or path, optional
-        The model, the name of a preset, or a file. Where it is absent the paper's dry chain is assumed
-        (preset ``"dry"``), with a warning.
+        The model, the name of a preset, or a file; where absent, preset ``"dry"`` is assumed with a warning.
     free : str or iterable of str
         Free numbers: short names (Y, nu, eta, K, A, B, of a material or section as in ``"wet.K"``)
         or paths; ``:power`` for a power law of speed, ``:each`` for one value a speed.
+    also : iterable of (data, model), optional
+        Further tables with their models, fitted together with ``data``; see docs/how-to/several-tables.md.
     folder : path, optional
         Where residuals so far and a posterior's walkers are kept. The same call with the same folder
         resumes an interrupted one, and returns the same bits; walkers stay there, to
         continue with more ``steps``.
     client : dask.distributed.Client, optional
         Computes the curves of a table's model on a cluster, all of them (``direct``), with the same
-        bits; ``folder`` is seen by all workers under this name. ``against`` is not available.
+        bits; ``folder`` is seen by all workers under this name. ``against`` and ``also`` are not available.
     points : int, optional
         Most points of a batch of a cluster; smaller ones where not every thread would have one.
     **options
@@ -91,16 +93,17 @@ def fit(
     options.count("points", points, 1)
     described = any(how.get(name) not in (None, ()) for name in ("shots", "rate", "channel"))
     files = _recordings(data, described)
+    others = [(table(other), opened(chain)) for other, chain in also]
+    if others and (client is not None or files is not None):
+        raise OptionError("also fits several tables in this process: leave it out of fits of recordings and on a cluster")
     with options.progress(progress, None, "curve") as update:
         if client is not None:
             from .distributed import fit_on
 
-            own = table(data)
-            asked = options.text("fit", how, data=[own[0]], **resumed(folder))
-            found = fit_on(client, _native.Likelihood(own, modelled(model), asked), folder, points, update)
+            asked = options.text("fit", how, **resumed(folder))
+            found = fit_on(client, _native.Likelihood(table(data), modelled(model), asked), folder, points, update)
         elif files is None:
-            own = table(data)
-            found = _native.fit(own, modelled(model), options.text("fit", how, data=[own[0]], **resumed(folder)), update)
+            found = _native.fit([(table(data), modelled(model)), *others], options.text("fit", how, **resumed(folder)), update)
         else:
             found = _native.fit_pulses(modelled(model), options.text("fit", how, data=files, **resumed(folder)), update)
         return fit_result({**found, "assumed_model": assumed(model=(model, "dry"))})
@@ -112,7 +115,7 @@ def fit_result(found: dict[str, Any]) -> FitResult:
         if (text := found.get(key)) is not None:
             warnings.warn(in_python(text), ExperimentWarning, stacklevel=3)
     rows, samples = found.pop("rows"), found.pop("samples", None)
-    texts = ("observable", "source", "channel")
+    texts = ("observable", "source", "channel", "file")
     return FitResult(
         parameters={raw["name"]: Parameter(raw) for raw in found["parameters"]},
         covariance=np.array(found["covariance"], dtype=float),
@@ -156,8 +159,7 @@ def design(
     own = table(data)
     with options.progress(progress, None, "curve") as update:
         found = _native.design(own, modelled(model), options.text("design", how, free=_named(free), data=own[0]), update)
-    found["assumed_model"] = assumed(model=(model, "dry"))
-    return DesignResult(found | {"parameter_units": found["units"]})
+    return DesignResult(found | {"assumed_model": assumed(model=(model, "dry")), "parameter_units": found["units"]})
 
 
 @options.with_options("gauge", "curves of the model")
@@ -207,8 +209,7 @@ def gauge(
     more = None if oils is None else table(oils)
     with options.progress(progress, None, "curve") as update:
         found = _native.gauge(tables, (modelled(model or "pump"), modelled(dry_model or "dry")), more, asked, update)
-    found["assumed_model"] = assumed(model=(model, "pump"), dry_model=(dry_model, "dry"))
-    return GaugeResult(found)
+    return GaugeResult(found | {"assumed_model": assumed(model=(model, "pump"), dry_model=(dry_model, "dry"))})
 
 
 def _named(free: str | Iterable[str]) -> list[str]:
@@ -299,7 +300,5 @@ def assumed(**models: tuple[object, str]) -> str | None:
 
 def resumed(folder: options.Path_ | None) -> dict[str, Any]:
     """Options for a folder in which an interrupted fit resumes."""
-    if folder is None:
-        return {}
-    into = Path(folder).resolve()
-    return {"out": into, "resume": (into / "chain.json").exists()}
+    into = Path(folder or ".").resolve()
+    return {} if folder is None else {"out": into, "resume": (into / "chain.json").exists()}

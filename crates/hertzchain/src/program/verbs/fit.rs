@@ -7,13 +7,15 @@ mod uncertainty;
 
 use crate::fit::{self, FitResult, Inferred, More};
 use crate::inference;
-use crate::options::{FitOptions as Arguments, Method};
+use crate::options::{FitOptions as Arguments, Method, ModelOptions};
 use crate::program::failure::{Failure, print_assumed, print_stored};
 use crate::program::folder::Folder;
 use crate::program::notes::with_notes;
 use crate::program::print;
 use crate::program::words::lines;
-use hertzchain_infer::{CurveProblem, Problem, Surrogate};
+use hertzchain_experiment::Experiment;
+use hertzchain_infer::{CurveProblem, Data, Problem, Surrogate};
+use std::path::Path;
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -21,12 +23,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         [one] if inference::is_table(one, arguments.recorded.describes_files())? => one,
         _ => return pulses::run(arguments),
     };
-    let data = inference::data(table, &arguments.measured)?;
-    let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
-    let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
-    print_assumed(&data, &arguments.measured);
-    print_stored(&model, &arguments.modelled.set);
-    let problem = inference::problem(model, data, &arguments.freed)?;
+    let problem = inference::posed(&pairs(table, arguments)?, arguments)?;
+    for curve in problem.curves() {
+        print_assumed(curve.data(), &arguments.measured);
+        print_stored(curve.model(), &arguments.modelled.set);
+    }
     pace(&problem, arguments);
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let threads = arguments.modelled.threads.map(|threads| threads.0);
@@ -34,6 +35,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut all = fit::json(&fit_result, arguments);
     show(arguments, &mut all, || report::text(&fit_result, arguments))?;
     folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
+}
+
+/// DATA and further tables, each with its model.
+fn pairs(table: &Path, arguments: &Arguments) -> Result<Vec<(Data, Experiment)>, Failure> {
+    let (measured, modelled) = (&arguments.measured, &arguments.modelled);
+    let model = |modelled: &ModelOptions| {
+        inference::opened(modelled.model.as_deref(), &modelled.preset, "")
+    };
+    let mut all = vec![(inference::data(table, measured)?, model(modelled)?)];
+    for also in &arguments.also {
+        let data = inference::data_of(&also.data, measured, also.case.clone())?;
+        all.push((data, model(&modelled.of_other(&also.model))?));
+    }
+    Ok(all)
 }
 
 /// Prints a result, and before all else that a model which was not named was assumed.
@@ -68,7 +83,10 @@ fn write(
     fit_result: &FitResult,
     all: &serde_json::Value,
 ) -> Result<(), Failure> {
-    folder.figure("fit", &pictures::fit(fit_result))?;
+    for (at, table) in fit_result.tables().iter().enumerate() {
+        let name = if at == 0 { "fit".to_owned() } else { format!("fit-{}", at + 1) };
+        folder.figure(&name, &pictures::fit(table, &fit_result.inferred))?;
+    }
     let tables = fit::tables(fit_result);
     write_inferred(&mut folder, &fit_result.inferred, (all, &tables))?;
     let out = folder.path().to_owned();

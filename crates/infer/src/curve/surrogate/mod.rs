@@ -10,8 +10,8 @@ mod ball;
 mod grid;
 mod polynomial;
 
+use super::joint::CurveProblem;
 use super::model::Predicted;
-use super::problem::CurveProblem;
 use crate::data::Data;
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Covariance, Fit, InferError, Parameter};
@@ -194,7 +194,7 @@ impl Surrogate {
     ///
     /// # Errors
     /// See [`InferError`].
-    pub fn with_data(&self, data: Data) -> Result<Self, InferError> {
+    pub fn with_data(&self, data: impl IntoIterator<Item = Data>) -> Result<Self, InferError> {
         Ok(Self { problem: self.problem.with_data(data)?, ..self.clone() })
     }
 }
@@ -251,7 +251,7 @@ impl Surrogate {
             return curves.par_iter().map(of).collect();
         }
         // Those that are computed count themselves.
-        let computed = self.problem.curves_at(points, &self.rough).into_iter();
+        let computed = self.problem.curves_with(points, |at| self.rough.contains(&at)).into_iter();
         let of = |(curve, computed): (&mut Vec<Predicted>, Result<Vec<Predicted>, _>)| {
             for (at, predicted) in self.rough.iter().zip(computed?) {
                 curve[*at] = predicted;

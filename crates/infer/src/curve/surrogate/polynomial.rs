@@ -242,7 +242,7 @@ fn chebyshev(x: f64, degree: usize) -> Vec<f64> {
 /// Which numbers of a curve residuals ask for.
 fn outputs(problem: &CurveProblem, speeds: usize) -> Vec<(usize, usize)> {
     let measured = problem.measured();
-    let used = |of: &usize| measured.iter().any(|(_, own)| own.index() == *of);
+    let used = |of: &usize| measured.iter().any(|(_, _, own)| own.index() == *of);
     let used: Vec<usize> = (0..4).filter(used).collect();
     let at = |speed: usize| used.iter().map(move |of| (speed, *of));
     (0..speeds).flat_map(at).collect()

@@ -1,7 +1,7 @@
 //! Figures of a fit.
 
-use super::{FitResult, report::short};
-use crate::fit::Inferred;
+use super::report::short;
+use crate::fit::{Inferred, TableFit};
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_infer::Observable;
 
@@ -17,8 +17,8 @@ const LOOKS: [(Colour, Marker); 4] = [
 const BAND: f64 = 1.96;
 
 /// Data with the fit and its band; residuals below.
-pub(super) fn fit(fit_result: &FitResult) -> Figure {
-    let data = fit_result.problem.data();
+pub(super) fn fit(table: &TableFit<'_>, inferred: &Inferred) -> Figure {
+    let data = table.curve.data();
     let mut figure = Figure::single_column(130.0).share_x();
     for times in [true, false] {
         let shown: Vec<Observable> = Observable::ALL
@@ -26,42 +26,42 @@ pub(super) fn fit(fit_result: &FitResult) -> Figure {
             .filter(|of| of.is_time() == times && data.has(*of))
             .collect();
         if !shown.is_empty() {
-            figure = figure.panel(curves(fit_result, &shown));
+            figure = figure.panel(curves(table, &shown));
         }
     }
-    figure.panel(residuals(fit_result))
+    figure.panel(residuals(table, inferred))
 }
 
 fn scale(of: Observable) -> f64 {
     if of.is_time() { 1e6 } else { 1.0 }
 }
 
-fn curves(fit_result: &FitResult, shown: &[Observable]) -> Chart {
+fn curves(table: &TableFit<'_>, shown: &[Observable]) -> Chart {
     let times = shown.iter().any(|of| of.is_time());
     let label = if times { "Time of flight (µs)" } else { "Ratio of peaks" };
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
     let chart = if times { chart.y_log() } else { chart };
-    let chart = chart.title(fit_result.problem.model().experiment().title());
+    let chart = chart.title(table.curve.model().experiment().title());
     let named = shown.iter().enumerate();
     named.fold(chart, |chart, (at, of)| {
         let line = if at == 0 { "fit" } else { "" };
-        with_curve(fit_result, chart, *of, line)
+        with_curve(table, chart, *of, line)
     })
 }
 
 /// Measured points, the fitted line and its 95 % band.
-fn with_curve(fit_result: &FitResult, chart: Chart, of: Observable, line: &str) -> Chart {
-    let rows = fit_result.problem.data().rows.iter().enumerate();
+fn with_curve(table: &TableFit<'_>, chart: Chart, of: Observable, line: &str) -> Chart {
+    let rows = table.curve.data().rows.iter().enumerate();
     let rows: Vec<_> = rows.filter_map(|(at, row)| Some((at, row, row.value(of)?))).collect();
     let unit = scale(of);
     let column =
         |value: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..rows.len()).map(value).collect() };
     let speeds = column(&|i| rows[i].1.speed_m_s.value);
     let predicted = column(&|i| {
-        let of_row = fit_result.curve.predicted.get(rows[i].0).and_then(|row| row[of as usize]);
+        let of_row = table.fit_curve.predicted.get(rows[i].0).and_then(|row| row[of as usize]);
         unit * of_row.unwrap_or(f64::NAN)
     });
-    let spread = column(&|i| unit * BAND * fit_result.curve.sd[rows[i].0][of as usize]);
+    let spread = column(&|i| unit * BAND * table.fit_curve.sd[rows[i].0][of as usize]);
     let (colour, marker) = LOOKS[of as usize];
     let edge = |sign: f64| column(&|i| predicted[i] + sign * spread[i]);
     let points = Series::points(short(of), &speeds, &column(&|i| unit * rows[i].2.value))
@@ -75,13 +75,12 @@ fn with_curve(fit_result: &FitResult, chart: Chart, of: Observable, line: &str) 
 
 /// Standardised residuals against speed, with the band that the parameters' errors
 /// leave the fit, in the same standard errors.
-fn residuals(fit_result: &FitResult) -> Chart {
-    let data = fit_result.problem.data();
-    let measured = fit_result.problem.measured();
+fn residuals(table: &TableFit<'_>, inferred: &Inferred) -> Chart {
+    let data = table.curve.data();
     let label = "Residual (standard errors)";
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log().h_line(0.0, "");
-    let residuals = measured.into_iter().zip(&fit_result.inferred.fit.residuals);
-    let spreads = spreads(fit_result);
+    let residuals = table.curve.measured().zip(table.residuals);
+    let spreads = spreads(table, inferred);
     let all: Vec<_> = residuals.zip(&spreads).collect();
     let sizes = all.iter().map(|((_, residual), sd)| residual.abs().max(BAND * **sd));
     let reach = sizes.filter(|size| size.is_finite()).fold(1.0, f64::max);
@@ -116,13 +115,12 @@ fn residuals(fit_result: &FitResult) -> Chart {
 const LEGEND_ABOVE: f64 = 1.8;
 
 /// Standard errors of the fitted curve in those of each residual.
-fn spreads(fit_result: &FitResult) -> Vec<f64> {
-    let Inferred { fit, covariance, .. } = &fit_result.inferred;
+fn spreads(table: &TableFit<'_>, Inferred { fit, covariance, .. }: &Inferred) -> Vec<f64> {
     let slopes = |at: usize| {
         let columns = fit.jacobian.columns.iter();
         columns.map(move |column| column.get(at).copied().unwrap_or(f64::NAN))
     };
-    (0..fit.jacobian.data_rows)
+    (table.first..table.first + table.residuals.len())
         .map(|at| covariance.sd_of(&slopes(at).collect::<Vec<f64>>()))
         .collect()
 }

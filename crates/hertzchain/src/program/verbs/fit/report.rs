@@ -1,6 +1,6 @@
 //! A fit for people.
 
-use crate::fit::{AlternativeModels, Curves, FitResult, Inferred, Limit, More, Sampled};
+use crate::fit::{AlternativeModels, Curves, FitResult, Inferred, Limit, More, Sampled, TableFit};
 use crate::inference::{references, widened};
 use crate::options::FitOptions as Arguments;
 use crate::program::format::{self, digits};
@@ -9,7 +9,7 @@ use crate::program::words::{
     chi_square_text, doubt, estimate, lines, misfit, p_value, percent, rough,
 };
 use hertzchain_infer::{
-    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Profile, Runs, Started,
+    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Prior, Profile, Runs, Started,
 };
 
 /// The solver's error may be this share of the least standard error.
@@ -17,25 +17,16 @@ const MOST_SHARE: f64 = 0.1;
 
 /// Everything that is to be said.
 pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
-    let data = fit_result.problem.data();
-    let case = match data.case.as_str() {
-        "" => String::new(),
-        case => format!(", {case}"),
-    };
-    let title = fit_result.problem.model().experiment().title();
-    let mut text = format!(
-        "{}\n{}{case}: {} values at {} speeds\n\n{}\n{}",
-        heading(title),
-        data.file,
-        data.value_count(),
-        data.rows.len(),
-        values(&fit_result.inferred),
-        lines(references(fit_result.problem.model()))
-    );
+    let all = fit_result.tables();
+    let titles: String = all.iter().map(|table| title(table, all.len() > 1)).collect();
+    let mut references: Vec<String> =
+        all.iter().flat_map(|table| references(table.curve.model())).collect();
+    references.dedup();
+    let mut text = format!("{titles}\n{}\n{}", values(&fit_result.inferred), lines(references));
     text += &described(&fit_result.inferred);
     text += &accuracy(fit_result);
     text += &lines(fit_result.unasked(arguments));
-    text += &widened(data).map_or(String::new(), |reported| format!("{reported}\n"));
+    text += &lines(all.iter().filter_map(|table| widened(table.curve.data())).collect());
     let advice = fit_result.advice.as_ref();
     text += &determined(&fit_result.inferred, &|| advice.map_or(Vec::new(), Advice::words));
     text += &more(&fit_result.inferred);
@@ -46,13 +37,32 @@ pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
     text + &unit(fit_result)
 }
 
+/// A table and its model; of several, its share of χ² too.
+fn title(table: &TableFit<'_>, of_several: bool) -> String {
+    let data = table.curve.data();
+    let case = match data.case.as_str() {
+        "" => String::new(),
+        case => format!(", {case}"),
+    };
+    let share = match of_several {
+        true => format!(", χ² = {}", digits(table.chi_square(), 4)),
+        false => String::new(),
+    };
+    format!(
+        "{}\n{}{case}: {} values at {} speeds{share}\n",
+        heading(table.curve.model().experiment().title()),
+        data.file,
+        data.value_count(),
+        data.rows.len()
+    )
+}
+
 /// That speeds seem to be in another unit.
 fn unit(fit_result: &FitResult) -> String {
-    fit_result.unit_of_speed.map_or(String::new(), |unit| {
+    fit_result.unit_of_speed.as_ref().map_or(String::new(), |(file, unit)| {
         format!(
-            "warning: {}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
-             times of flight at speeds that many times slower\n",
-            fit_result.problem.data().file
+            "warning: {file}: speeds look like {unit}, expected m/s (column speed_m_s, all lines): the model has such \
+             times of flight at speeds that many times slower\n"
         )
     })
 }
@@ -135,7 +145,11 @@ pub(super) fn values(fit_result: &Inferred) -> String {
     let row = |(at, parameter): (usize, &Parameter)| {
         let (value, sd) = (fit_result.fit.point[at], fit_result.standard_error(at));
         let limit = fit_result.limit(at).map(limit).unwrap_or_default();
-        (parameter.name.clone(), estimate(parameter, value, sd) + &limit)
+        let prior = match parameter.prior {
+            Prior::Normal { mean, sd } => format!(", prior {}", estimate(parameter, mean, sd)),
+            _ => String::new(),
+        };
+        (parameter.name.clone(), estimate(parameter, value, sd) + &limit + &prior)
     };
     format::pairs(&parameters.map(row).collect::<Vec<_>>())
 }
@@ -204,7 +218,7 @@ fn runs_text(runs: Runs) -> String {
 
 /// The model's own error against the data's.
 fn accuracy(fit_result: &FitResult) -> String {
-    let rows = fit_result.problem.data().rows.iter();
+    let rows = fit_result.problem.curves().iter().flat_map(|curve| &curve.data().rows);
     let times = rows.flat_map(|row| row.values.iter().take(2).flatten());
     let relative = times.map(|time| time.sigma / time.value);
     let least = relative.fold(f64::INFINITY, f64::min);
@@ -242,6 +256,9 @@ pub(super) fn determined(fit_result: &Inferred, advice: &dyn Fn() -> Vec<String>
     }
     let mut text =
         format!("\nThe data determine {known} of {all} combinations of the parameters.\n");
+    if fit_result.is_closed_by_priors() {
+        return text.replace(".\n", ", priors the others.\n");
+    }
     for confusion in &found.unidentifiable {
         text += &format!("  Not determined: {}.\n", confusion.words);
     }
