@@ -35,6 +35,8 @@ const SHORTEST: f64 = 1e-13;
 const MOST_FORCES: u64 = 300_000_000;
 /// Overlaps that are none, over a typical one: so that no contact changes its mode back at once.
 const TINY: f64 = 1e-14;
+/// Rises and dips below this share of the largest value are none.
+const SMALL: f64 = 1e-9;
 /// Maxima below this share of the largest are not looked for.
 const FLOOR: f64 = 1e-6;
 
@@ -61,11 +63,13 @@ pub(crate) struct Motion {
     y: Vec<f64>,
     mode: Vec<Mode>,
     loading: Vec<bool>,
+    /// Approaching, of sharp contacts.
+    pressed: Vec<bool>,
     largest: Vec<f64>,
     step_s: f64,
     forces: Cell<u64>,
     before: Option<[[f64; 2]; 2]>,
-    pub maxima: [Vec<Maximum>; 2],
+    maxima: [Vec<Maximum>; 2],
     /// Lowest value between each maximum and the one before it.
     pub dips: [Vec<f64>; 2],
     highest: [f64; 2],
@@ -87,6 +91,7 @@ impl Motion {
         Self {
             mode: contacts.iter().map(open).collect(),
             loading: vec![true; contacts.len()],
+            pressed: vec![true; contacts.len()],
             largest: contacts.iter().map(|contact| rest(contact).max(0.0)).collect(),
             equations,
             scales,
@@ -266,7 +271,9 @@ impl Motion {
                     (true, true) => -r / self.scales.speed_m_s - TINY,
                     (true, false) => (d - self.largest[c]) / size - TINY,
                 };
-                leaves.max(cut).max(turn)
+                let rate = if self.pressed[c] { -r } else { r } / self.scales.speed_m_s;
+                let sharp = if contact.is_sharp { rate - TINY } else { leaves };
+                leaves.max(cut).max(turn).max(sharp)
             }
         }
     }
@@ -385,7 +392,10 @@ impl Motion {
                 true => r < 0.0,
                 false => d >= self.largest[c],
             };
+            let turned = self.equations.contacts[c].is_sharp && (r > 0.0) != self.pressed[c];
+            self.pressed[c] = r > 0.0;
             match self.mode[c] {
+                Mode::Closed if turned && !leaves && !(plastic && turns) => self.step_s *= 0.01,
                 Mode::Open => {
                     self.mode[c] = Mode::Closed;
                     self.loading[c] = self.largest[c] <= 0.0;
@@ -429,7 +439,7 @@ impl Motion {
             self.lowest[at] = self.lowest[at].min(value);
             if let Some(before) = before {
                 let [old, rose] = before[at];
-                let small = 1e-9 * self.highest[at];
+                let small = SMALL * self.highest[at];
                 let (up, down) = (value > old + small, value < old - small);
                 if (up || rose > 0.0) && (down || rises <= 0.0) {
                     self.keep(at, 0.0, old.max(value));
@@ -449,12 +459,30 @@ impl Motion {
     }
 
     fn keep(&mut self, at: usize, within_s: f64, height_n: f64) {
-        if height_n > FLOOR * self.highest[at] && height_n > 0.0 {
-            let time_s = self.time_s + within_s;
-            self.maxima[at].push(Maximum { time_s, height_n });
-            self.dips[at].push(self.lowest[at]);
-            self.lowest[at] = height_n;
+        if height_n <= FLOOR * self.highest[at] || height_n <= 0.0 {
+            return;
         }
+        let maximum = Maximum { time_s: self.time_s + within_s, height_n };
+        let (dip, small) = (self.lowest[at], SMALL * self.highest[at]);
+        match self.maxima[at].last_mut() {
+            Some(last) if dip.min(height_n) >= last.height_n - small => {
+                if height_n > last.height_n {
+                    (*last, self.lowest[at]) = (maximum, height_n);
+                }
+            }
+            _ => {
+                self.maxima[at].push(maximum);
+                self.dips[at].push(dip);
+                self.lowest[at] = height_n;
+            }
+        }
+    }
+
+    /// The maxima of the sensor bead or of the wall from which the signal has fallen.
+    pub(crate) fn maxima(&self, at: usize) -> &[Maximum] {
+        let rises_on = |last: &Maximum| self.lowest[at] >= last.height_n - SMALL * self.highest[at];
+        let all = &self.maxima[at];
+        &all[..all.len() - usize::from(all.last().is_some_and(rises_on))]
     }
 
     /// Where a signal that rises at the start of a step and falls at its end is highest.

@@ -149,6 +149,8 @@ pub(crate) struct Contact {
     /// Force at rest in N.
     pub load_n: f64,
     pub is_plastic: bool,
+    /// Its force has an infinite slope where the rate changes sign.
+    pub is_sharp: bool,
 }
 
 impl Contact {
@@ -258,7 +260,8 @@ fn contact(row: &Row, c: usize, load_n: f64) -> Contact {
         laws.iter().map(|law| Term::of(law, (left, materials.0), other)).collect();
     let gap_m = row.gaps.iter().find(|(at, _)| *at == c).map_or(0.0, |(_, gap_m)| *gap_m);
     let is_plastic = terms.iter().any(|term| matches!(term, Term::Plastic(_)));
-    let mut contact = Contact { terms, rest_m: 0.0, load_n, is_plastic };
+    let is_sharp = terms.iter().any(|term| matches!(term, Term::Power(_, rate, _) if *rate < 1.0));
+    let mut contact = Contact { terms, rest_m: 0.0, load_n, is_plastic, is_sharp };
     contact.rest_m = match load_n > 0.0 {
         true => contact.overlap_at(load_n),
         false => -gap_m,

@@ -103,7 +103,7 @@ impl Reference {
             }
         }
         let run = &self.runs[0];
-        self.prominent = [0, 1].map(|at| prominent(&run.maxima[at], &run.dips[at]));
+        self.prominent = [0, 1].map(|at| prominent(run.maxima(at), &run.dips[at]));
         Ok(())
     }
 
@@ -121,7 +121,7 @@ impl Reference {
 
     /// The maxima of both signals.
     pub(crate) fn signals(&self) -> Signals<'_> {
-        let [sensor, wall] = &self.runs[0].maxima;
+        let [sensor, wall] = [0, 1].map(|at| self.runs[0].maxima(at));
         Signals { sensor, wall, least_n_s: self.least_n_s }
     }
 
@@ -135,7 +135,7 @@ impl Reference {
         let Some(looser) = self.runs.get(1) else {
             return 0.0;
         };
-        let again = nearest(&looser.maxima[signal], maximum.time_s);
+        let again = nearest(looser.maxima(signal), maximum.time_s);
         again.map_or(f64::INFINITY, |again| (again.time_s - maximum.time_s).abs())
     }
 }

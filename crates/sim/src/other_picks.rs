@@ -4,8 +4,9 @@
 //! that is hardly any. What a signal's shape leaves open is found here; whether heights are as
 //! wrong as that is the estimate's question.
 
+use hertzchain_chain::System;
 use hertzchain_chain::observe::{
-    Competing, Maximum, Passage, Passages, Pulse, RETURN_WITHIN, Stretch,
+    Competing, Maximum, Passage, Passages, Pulse, RETURN_WITHIN, Signal, Stretch, WALL_WITHIN,
 };
 
 /// Another maximum that could be a pulse's peak.
@@ -20,17 +21,30 @@ pub(crate) struct OtherPick {
 /// Stretches shorter than this share of the shortest contact time have slopes of rounding.
 const SHORTEST: f64 = 1e-3;
 
-/// Maxima that errors of heights could make the peak of a pulse; `least_s` is the
-/// time of the shortest contact, during which an error may rise to its whole size.
-pub(crate) fn other_picks(seen: &Passages, passage: &Passage, least_s: f64) -> Vec<OtherPick> {
+/// Maxima that errors of heights could make the peak of a pulse.
+pub(crate) fn other_picks(seen: &Passages, passage: &Passage, system: &System) -> Vec<OtherPick> {
     let largest = passage.incident.value.max(passage.wall.value);
     let pick =
         |(height, time_error): (f64, f64)| OtherPick { height_error: height / largest, time_error };
     let as_high = passage.competing.iter().map(|other| as_high(other, passage));
     let after = after_wall(seen, passage);
-    let flattest = flattest(&after, passage, least_s);
+    // An error may rise to its whole size during the shortest contact.
+    let flattest = flattest(&after, passage, system.scales().time_s);
     let slight = passage.reflected.map(|peak| (prominence(&after, peak), 1.0));
-    as_high.chain(flattest).chain(slight).map(pick).collect()
+    let faint =
+        (!system.flies_free()).then(|| faintest(seen.wall(), passage)).into_iter().flatten();
+    as_high.chain(flattest).chain(slight).chain(faint).map(pick).collect()
+}
+
+/// By how much forces that a wall shows before the wave arrives, under load or through open contacts, are
+/// above or below the least height of a pulse, if their search would be over before the wall's peak.
+fn faintest(wall: &Signal, passage: &Passage) -> impl Iterator<Item = (f64, f64)> {
+    let (peak, until_s) = (passage.wall, passage.wall.time_s / WALL_WITHIN);
+    // What is not kept, or is no maximum at looser steps, may be anything up to the error.
+    let silent = Maximum { time_s: until_s, value: 0.0 };
+    let early = wall.maxima().iter().copied().filter(move |it| it.time_s < until_s || *it == peak);
+    let off = |it: Maximum| ((it.value - wall.least_height(it.time_s)).abs(), 1.0);
+    early.chain([silent]).map(off)
 }
 
 /// By how much another maximum is lower, and how far away it is.

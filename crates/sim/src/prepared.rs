@@ -459,8 +459,7 @@ impl<'a> PreparedShot<'a> {
             false => Err(PassageError::NoWallPulse { duration_s: outcome.time_s }),
         };
         let seen = passage.as_ref().ok();
-        let least_s = self.system.scales().time_s;
-        let other_picks = seen.map(|seen| other_picks(passages, seen, least_s));
+        let other_picks = seen.map(|seen| other_picks(passages, seen, &self.system));
         let is_struck = matches!(self.plan.chain.start, Start::Striker { .. });
         // A shot that came to the end of the rule by another way than the striker's.
         let own_end = self.plan.rebound && self.plan.duration_s.is_none();

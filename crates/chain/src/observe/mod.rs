@@ -6,12 +6,13 @@ mod signal;
 mod tracer;
 
 pub use self::{
-    passage::{Competing, Flank, Passage, PassageError, Passages, Pulse, RETURN_WITHIN},
+    passage::{
+        Competing, Flank, Passage, PassageError, Passages, Pulse, RETURN_WITHIN, WALL_WITHIN,
+    },
     separation::{Apart, Separation},
 };
 pub use self::{
     signal::{Maximum, Shape, Signal, Stretch},
     tracer::{Trace, Tracer},
 };
-pub(crate) use passage::WALL_WITHIN;
 pub(crate) use signal::{LEAST_SHARE, least_n_s};

@@ -132,7 +132,7 @@ pub const RETURN_WITHIN: f64 = 3.0;
 
 /// The wall's peak is looked for until this many times its time at least: about when
 /// the pulse, back from the striker, is at the wall again.
-pub(crate) const WALL_WITHIN: f64 = 3.0;
+pub const WALL_WITHIN: f64 = 3.0;
 
 /// A maximum of at least this share of a peak's height could be taken for it.
 const COMPETES: f64 = 0.5;

@@ -108,6 +108,8 @@ pub struct Signal {
     /// Least height times time of a pulse, in N s.
     least_n_s: f64,
     lowest: f64,
+    /// The signal has not yet fallen below its last maximum by more than rounding.
+    rises_on: bool,
     /// End of the previous step: time, value, slope.
     before: Option<(f64, f64, f64)>,
 }
@@ -154,6 +156,7 @@ impl Signal {
             largest: 0.0,
             least_n_s: 0.0,
             lowest: f64::INFINITY,
+            rises_on: false,
             before: None,
         }
     }
@@ -169,6 +172,11 @@ impl Signal {
         Self { stretches, maxima, shapes, least_n_s, ..Self::new(sensor) }
     }
 
+    /// Least height of a pulse's peak at a time in s.
+    pub fn least_height(&self, time_s: f64) -> f64 {
+        self.least_n_s / time_s
+    }
+
     /// Whether a maximum is large enough for a pulse's peak.
     pub(super) fn is_pulse(&self, peak: &Maximum) -> bool {
         peak.value * peak.time_s >= self.least_n_s
@@ -182,7 +190,7 @@ impl Signal {
     /// All local maxima so far, in order of time; of forces, those above
     /// 1e-4 of the largest value seen until then.
     pub fn maxima(&self) -> &[Maximum] {
-        &self.maxima
+        &self.maxima[..self.maxima.len() - usize::from(self.rises_on)]
     }
 
     /// The shape of a maximum; unknown of a signal that was followed step by step, or of what is
@@ -278,15 +286,19 @@ impl Signal {
             self.keep(Maximum { time_s, value });
         }
         self.lowest = self.lowest.min(0.0);
+        self.rises_on = false;
     }
 
     /// Adds the maxima of one step, and the one between it and the last.
     fn look_for_maxima(&mut self, piece: &Piece<'_>, stretch: &Stretch) {
         let slopes = stretch.end_slopes();
-        let [start_slope, end_slope] = [(0.0, slopes[0]), (1.0, slopes[1])]
+        let [mut start_slope, end_slope] = [(0.0, slopes[0]), (1.0, slopes[1])]
             .map(|(theta, slope)| self.slope(piece, theta, slope));
         let [start, .., end] = stretch.values;
         let floor = JUMP.max(OF_CUT * piece.cut_tolerance()) * self.largest;
+        if piece.sharp_rises(self.sensor).any(|from| from == 0.0) {
+            start_slope = first_change(piece, self.sensor, floor).unwrap_or(start_slope);
+        }
         // Before a signal is first seen, and after silence, it was 0.
         let (time_s, value, slope) = self.before.unwrap_or((stretch.start_s, 0.0, 0.0));
         let rises = slope > 0.0 || start > value + floor;
@@ -294,9 +306,20 @@ impl Signal {
         if rises && falls {
             self.keep(Maximum { time_s, value: value.max(start) });
         }
-        let inside = interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch);
+        let mut inside = interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch);
+        for from in piece.sharp_rises(self.sensor).filter(|_| end_slope <= 0.0) {
+            let start_s = piece.time_s(from);
+            if inside.iter().all(|maximum| maximum.time_s <= start_s)
+                && let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, from, floor)
+            {
+                self.lowest = self.lowest.min(dip);
+                inside.push(maximum);
+            }
+        }
         self.keep_inside(stretch, inside);
         self.before = Some((stretch.end_s(), end, end_slope));
+        let dip = JUMP * self.largest;
+        self.rises_on = self.maxima.last().is_some_and(|last| self.lowest >= last.value - dip);
     }
 }
 
@@ -367,6 +390,46 @@ fn refined(piece: &Piece<'_>, sensor: Sensor, (low, high): (f64, f64)) -> Option
     // Fixed steps run across jumps, where values decide, not rates.
     let above = |theta: f64| maximum.value > piece.signal(sensor, theta);
     (falling(high) >= 0.0 || (above(low) && above(high))).then_some(maximum)
+}
+
+/// By how much a signal first differs from its value at the start of a step, if by more than a floor.
+fn first_change(piece: &Piece<'_>, sensor: Sensor, floor: f64) -> Option<f64> {
+    let start = piece.signal(sensor, 0.0);
+    let change = |halvings: i32| piece.signal(sensor, 0.5_f64.powi(halvings)) - start;
+    (0..SHARPEST).rev().map(change).find(|change| change.abs() > floor)
+}
+
+/// Halvings of a step in which a maximum behind an infinite slope is looked for.
+const SHARPEST: i32 = 40;
+
+/// The value from which a signal rises with infinite slope, and the maximum that it comes to
+/// within the step, if that is higher by a floor: it may be narrower than any difference quotient.
+fn sharp_maximum(
+    piece: &Piece<'_>,
+    sensor: Sensor,
+    from: f64,
+    floor: f64,
+) -> Option<(f64, Maximum)> {
+    let value = |theta: f64| piece.signal(sensor, theta);
+    let at = |halvings: i32| from + (1.0 - from) * 0.5_f64.powi(halvings);
+    let values = (0..SHARPEST).map(|halvings| (value(at(halvings)), halvings));
+    let (most, highest) = values.max_by(|one, two| one.0.total_cmp(&two.0))?;
+    let dip = value(from);
+    if highest == 0 || most <= dip + floor {
+        return None;
+    }
+    // Golden section: the rate of so narrow a maximum is not known.
+    let (mut low, mut high) = (at(highest + 1), at(highest - 1));
+    let share = 0.5 * (5.0_f64.sqrt() - 1.0);
+    for _ in 0..30 {
+        let (left, right) = (high - share * (high - low), low + share * (high - low));
+        match value(left) > value(right) {
+            true => high = right,
+            false => low = left,
+        }
+    }
+    let theta = 0.5 * (low + high);
+    Some((dip, Maximum { time_s: piece.time_s(theta), value: value(theta) }))
 }
 
 #[cfg(test)]

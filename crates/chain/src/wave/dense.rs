@@ -1,6 +1,7 @@
 //! A finished step as a continuous function of time.
 
 use super::energy::Budget;
+use super::gate::bracketed_root;
 use super::meter::Meter;
 use super::state::{ContactMode, WaveState};
 use super::step::MOST_STAGES;
@@ -108,17 +109,37 @@ impl Piece<'_> {
     /// Whether a contact that a sensor sees has just closed, or is about to open, at `theta`:
     /// the slopes of some laws are infinite there.
     pub(crate) fn is_near_touch(&self, sensor: Sensor, theta: f64) -> bool {
-        let near = |contact: usize| {
+        self.closed_contacts(sensor).any(|contact| {
             let (overlap, rate) = self.overlap(contact, theta);
-            !self.is_open(contact) && overlap.abs() < NEAR_TOUCH * rate.abs() * self.step_s
-        };
+            overlap.abs() < NEAR_TOUCH * rate.abs() * self.step_s
+        })
+    }
+
+    /// Closed contacts whose forces a sensor shows.
+    fn closed_contacts(&self, sensor: Sensor) -> impl Iterator<Item = usize> {
         let wall = self.system.contacts() - 1;
-        match sensor {
-            Sensor::Bead(n) => near(self.before(n)) || near(n),
-            Sensor::Contact(c) => near(c),
-            Sensor::BeadPlusWall(n) => near(self.before(n)) || near(n) || near(wall),
-            Sensor::Position(_) | Sensor::Velocity(_) => false,
-        }
+        let contacts = match sensor {
+            Sensor::Bead(n) => [Some(self.before(n)), Some(n), None],
+            Sensor::Contact(c) => [Some(c), None, None],
+            Sensor::BeadPlusWall(n) => [Some(self.before(n)), Some(n), Some(wall)],
+            Sensor::Position(_) | Sensor::Velocity(_) => [None; 3],
+        };
+        contacts.into_iter().flatten().filter(|&contact| !self.is_open(contact))
+    }
+
+    /// Where in the step a contact that a sensor shows begins to be pressed, at its touch or again: some
+    /// laws' forces rise there with an infinite slope, in overlap or in rate.
+    pub(crate) fn sharp_rises(&self, sensor: Sensor) -> impl Iterator<Item = f64> {
+        self.closed_contacts(sensor).filter_map(|contact| {
+            let rate = |theta: f64| self.overlap(contact, theta).1;
+            let (overlap, first) = self.overlap(contact, 0.0);
+            let touches = first > 0.0 && overlap < NEAR_TOUCH * first * self.step_s;
+            let turns = first <= 0.0 && rate(1.0) > 0.0;
+            match touches {
+                true => Some(0.0),
+                false => turns.then(|| bracketed_root(rate, 0.0, 1.0, 1e-13)),
+            }
+        })
     }
 
     /// Whether a contact is on the long step.
