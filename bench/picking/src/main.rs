@@ -13,11 +13,13 @@ use fault::{Fault, HARD, KNEE, SHORT_KNEE, TANH};
 use hertzchain_measure::signal::Bandwidth;
 use row::Row;
 use std::error::Error;
+use std::path::PathBuf;
 use tally::Tally;
 
 const PRESETS: [&str; 4] = ["dry", "pump", "gear", "motor"];
 const SPEEDS_M_S: [f64; 6] = [0.08, 0.2, 0.5, 1.2, 2.0, 2.5];
-const USAGE: &str = "usage: hertzchain-picking [SHOTS] [--seed N] [--only TEXT] [--each]";
+const USAGE: &str = "usage: hertzchain-picking [SHOTS] [--seed N] [--only TEXT] [--each] \
+                     [--chains N] [--first N] [--write FOLDER]";
 const HEADER: &str = "\
 | records | shots | timed | counted | incident: within 1.96, % | made/stated | reflected: % | made/stated \
 | counted, incident: % | made/stated | reflected: % | made/stated | returns | χ² of means, incident \
@@ -25,20 +27,29 @@ const HEADER: &str = "\
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 
 /// What the command line asks for.
+#[derive(Default)]
 struct Options {
     shots: u64,
     seed: u64,
     only: String,
     each: bool,
+    /// So many chains at random in place of the presets' rows, from this number on.
+    chains: u64,
+    first: u64,
+    /// Where the rows' forces are written, in place of a table.
+    write: Option<PathBuf>,
 }
 
 impl Options {
     fn parse(mut words: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
-        let mut options = Self { shots: 20, seed: 1, only: String::new(), each: false };
+        let mut options = Self { shots: 20, seed: 1, ..Self::default() };
         while let Some(word) = words.next() {
             match word.as_str() {
                 "--seed" => options.seed = words.next().ok_or(USAGE)?.parse()?,
                 "--only" => options.only = words.next().ok_or(USAGE)?,
+                "--chains" => options.chains = words.next().ok_or(USAGE)?.parse()?,
+                "--first" => options.first = words.next().ok_or(USAGE)?.parse()?,
+                "--write" => options.write = words.next().map(PathBuf::from),
                 "--each" => options.each = true,
                 count => options.shots = count.parse().map_err(|_| USAGE)?,
             }
@@ -49,11 +60,18 @@ impl Options {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse(std::env::args().skip(1))?;
-    let mut rows = Vec::new();
-    for preset in PRESETS {
-        for speed_m_s in SPEEDS_M_S {
-            rows.push(Row::compute(preset, speed_m_s)?);
+    let rows = match options.chains {
+        0 => preset_rows()?,
+        count => {
+            let numbers = options.first..options.first + count;
+            numbers.filter_map(|number| Row::at_random(number).ok()).collect()
         }
+    };
+    if let Some(folder) = options.write {
+        for row in &rows {
+            row.write(&folder)?;
+        }
+        return Ok(());
     }
     println!("{HEADER}");
     for (name, faults) in families() {
@@ -66,6 +84,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
+}
+
+fn preset_rows() -> Result<Vec<Row>, Box<dyn Error>> {
+    let speeds = |preset| SPEEDS_M_S.map(|speed_m_s| Row::of_preset(preset, speed_m_s));
+    PRESETS.into_iter().flat_map(speeds).collect()
 }
 
 /// A line of the table.

@@ -102,7 +102,7 @@ impl Tally {
             if each {
                 println!(
                     "|   {} {} | | {} | {} | {} | {}",
-                    row.preset,
+                    row.name,
                     row.speed_m_s,
                     all.0[0].len(),
                     counted.0[0].len(),
@@ -131,7 +131,7 @@ impl Tally {
             if let Some(of) = coverage(pulls, WITHIN).filter(|of| of.count >= 10)
                 && 100.0 * of.share < worst.0
             {
-                *worst = (100.0 * of.share, format!("{} {}", row.preset, row.speed_m_s));
+                *worst = (100.0 * of.share, format!("{} {}", row.name, row.speed_m_s));
             }
         }
     }
@@ -144,7 +144,7 @@ impl Tally {
                     let apart = |row: &&Row| (row.speed_m_s / speed_m_s.value).ln().abs();
                     apart(a).total_cmp(&apart(b))
                 };
-                let row = rows.iter().filter(|row| row.preset == case.name).min_by(near);
+                let row = rows.iter().filter(|row| row.name == case.name).min_by(near);
                 row.map(|row| {
                     let slower = (speed_m_s.value / row.speed_m_s).powf(-0.2);
                     row.flights_s().map(|time| slower * time)
@@ -211,7 +211,7 @@ fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -
         source: String::new(),
         file: Default::default(),
         shot: None,
-        case: row.preset.to_owned(),
+        case: row.name.to_owned(),
         programmed_speed_m_s: Some(row.speed_m_s),
         speed_m_s: Some(Estimate { value: speed_m_s, sigma: 1e-9 }),
         interval_s,
