@@ -307,7 +307,7 @@ impl Batch {
         let places = Calibration::places(&columns).ok_or("so few shots are computed sooner so")?;
         let planned = self.planned(&places).into_iter().flatten();
         let plans: Vec<Plan> = planned.map(|(plan, _)| plan).collect();
-        Calibration::new(&plans, self.options.set)
+        Calibration::new(&plans, columns.len() == 1, self.options.set)
     }
 
     fn control<'a>(&self, calibration: &'a Result<Calibration, &'static str>) -> Control<'a> {

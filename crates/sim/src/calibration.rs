@@ -12,9 +12,10 @@ use crate::plan::Plan;
 use crate::shot::{Conditioning, Shot};
 use hertzchain_chain::ensemble::Precision;
 use hertzchain_chain::observe::{Competing, Passage, Pulse};
-use hertzchain_chain::{InstructionSet, System};
+use hertzchain_chain::{InstructionSet, Start, System};
 use rayon::prelude::*;
 use std::fmt::{Display, Formatter, Result as Formatted};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Calibration shots of a batch over speeds, and of one in which other numbers differ too.
@@ -29,9 +30,29 @@ const TIGHTER: f64 = 20.0;
 /// Most times that steps are halved for that.
 const MOST_HALVINGS: usize = 6;
 
-/// Estimates are this many times the largest error of calibration shots of the same condition: in
-/// between others may be worse.
-const MARGIN: f64 = 1.5;
+/// Estimates are this many times the largest error of all calibration shots over their condition, or
+/// of the [`NEAREST`] in speed: in between others may be worse.
+const MARGIN: [f64; 2] = [1.5, 2.0];
+
+/// And so many times as large where reflected maxima compete: with 2 alone, 4 of 10,000 wet shots were
+/// wrong by up to 1.2 times their estimates.
+const OF_COMPETING: f64 = 1.5;
+
+/// Calibration shots that say how wrong one of a speed between theirs is: what a row does behind
+/// its pulse changes with speed.
+const NEAREST: usize = 16;
+
+/// A peak whose interpolations differ by more than this many times what is usual has a kink near its
+/// top, or another maximum, and may be wrong by so many times what is above that: pump and motor oil,
+/// where two maxima become one.
+const OF_USUAL: f64 = 2.0;
+const OF_KINKS: f64 = 40.0;
+
+/// Share of the accuracy asked by which interpolations of smooth peaks differ at most.
+const SMOOTH: f64 = 0.01;
+
+/// Share of calibration shots that must converge.
+const CONVERGED: f64 = 0.75;
 
 /// Halving a step leaves at most a quarter of an error: what that changes is three times what is
 /// left. Forces that begin or end within a step leave errors of order two.
@@ -60,37 +81,48 @@ const WITH_OPENINGS: [f64; 21] = [
 ];
 
 /// Settings, cheapest first.
-fn settings() -> Vec<(Setting, Precision)> {
+fn settings((passed, longest_s): (bool, f64)) -> Vec<Setting> {
     let of = |steps: &[f64], precision: Precision, openings: bool| {
         let setting = |&step: &f64| {
             let precision = Some(precision);
-            Setting { step, precision, openings, shapes: false, passed: true }
+            Setting { step, precision, openings, shapes: false, passed, longest_s }
         };
-        steps.iter().map(setting).map(|setting| (setting, precision)).collect::<Vec<_>>()
+        steps.iter().map(setting).collect::<Vec<_>>()
     };
     let mut all = of(&SINGLE, Precision::Single, false);
     all.extend(of(&DOUBLE, Precision::Double, false));
     all.extend(of(&WITH_OPENINGS, Precision::Double, true));
-    all.sort_by(|(a, of_a), (b, of_b)| cost(a, *of_a).total_cmp(&cost(b, *of_b)));
+    all.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     all
 }
 
-/// Cost of a step in double precision, of one that locates openings, and of control per shot with
-/// its three runs that wait for whatever may come, over that of a step in single precision.
+/// Cost of a step in double precision, of one that locates openings and of a shot that waits for
+/// whatever may come, over that of a step in single precision.
 const OF_DOUBLE: f64 = 2.0;
 const OF_OPENINGS: f64 = 1.2;
-const OF_PER_SHOT: f64 = 5.0;
+const OF_WAITING: f64 = 1.8;
 
-/// A setting of the loop with equal steps that calibration shots have shown to be right enough.
+/// Cost of a shot of the adaptive loop, with two more to compare with, in steps of single precision
+/// a contact time.
+const OF_ADAPTIVE: f64 = 5000.0;
+
+/// Shots may last this many times as long as the longest calibration shot.
+const LONGEST: f64 = 1.5;
+
+/// Steps that are shorter see no kink beyond 0.05 contact times of a peak, where another maximum may
+/// hide: motor oil at 0.1553 m/s.
+const SHORTEST: f64 = 0.017;
+
+/// A setting is added if it leaves at most this share of the cost.
+const LESS: f64 = 0.95;
+
+/// Settings of the loop with equal steps that calibration shots have shown to be right enough,
+/// cheapest first: what one leaves open is computed with the next.
 #[derive(Clone, Debug)]
 pub struct Calibration {
-    setting: Setting,
+    tiers: Vec<Tier>,
     /// One of the family, and its system.
     first: (Plan, Arc<System>),
-    /// Relative error of a time of flight over the shot's condition, with a margin.
-    error: f64,
-    /// Relative error of a peak's height, with a margin.
-    height_error: f64,
     /// Largest estimate of a relative error of a time of flight among the calibration shots that
     /// are right enough.
     pub reached: f64,
@@ -98,23 +130,54 @@ pub struct Calibration {
     pub shots: usize,
 }
 
-/// Calibration shots with what they are compared with.
+/// A setting, and how wrong its shots are.
+#[derive(Clone, Debug)]
+pub(crate) struct Tier {
+    setting: Setting,
+    /// By speed, one of each calibration shot.
+    records: Vec<Record>,
+    /// Relative error of a peak's height, with a margin.
+    height_error: f64,
+}
+
+/// What the calibration shots about a speed show.
+#[derive(Clone, Copy, Debug)]
+struct Record {
+    speed_m_s: f64,
+    /// Relative error of a time of flight over the shot's condition, with a margin.
+    error: f64,
+    margin: f64,
+    /// By how much interpolations of peaks usually differ.
+    usual: f64,
+    /// Whether any of them is right enough.
+    serves: bool,
+}
+
+/// Shots of one setting.
+type Tried = (Setting, Vec<Option<Shot>>);
+
+/// Calibration shots, by speed, with what they are compared with.
 struct Sample<'a> {
     plans: Vec<&'a Plan>,
     systems: Vec<Option<Arc<System>>>,
-    exact: Vec<Shot>,
+    /// Those that have converged.
+    exact: Vec<Option<Shot>>,
+    /// Settings with which that was found, the longest step first.
+    halved: Vec<Tried>,
     set: InstructionSet,
+    by_speed: bool,
 }
 
 impl Calibration {
-    /// The setting with which the plans' family is computed soonest, those shots counted that are
-    /// not right enough and take the adaptive loop.
+    /// The settings with which the plans' family is computed soonest, those shots counted that are
+    /// not right enough and take a later one or the adaptive loop.
     ///
-    /// The plans should span what the family spans: speeds, coefficients of laws.
+    /// The plans should span what the family spans: speeds, coefficients of laws; `by_speed` where
+    /// all follows from the speed.
     ///
     /// # Errors
     /// Why there is none.
-    pub fn new(plans: &[Plan], set: InstructionSet) -> Result<Self, &'static str> {
+    pub fn new(plans: &[Plan], by_speed: bool, set: InstructionSet) -> Result<Self, &'static str> {
         let first = plans.first().ok_or("no shot can be computed")?;
         let system = first.chain.system().map_err(|_| "no shot can be computed")?;
         let family = |plan: &Plan| belongs(plan, (first, &system));
@@ -122,33 +185,32 @@ impl Calibration {
             return Err("calibration is for uniform rows that fly free, timed by peaks");
         }
         let own = Setting::of(first).ok_or("equal steps do not reach this accuracy")?;
-        let per_shot = OF_PER_SHOT * cost(&own, Precision::Double);
-        let sample = Sample::new(plans, own, set)?;
-        let mut best: Option<(f64, Self)> = None;
-        // The longest step worth trying, of each kind of setting.
-        let mut longest: Vec<(Setting, f64)> = Vec::new();
-        for (setting, precision) in settings() {
-            let step = setting.step;
-            let least = best.as_ref().map_or(per_shot, |(least, _)| *least);
-            if cost(&setting, precision) >= least {
-                break;
-            }
-            let too_long = |(tried, longest): &(Setting, f64)| {
-                step > *longest && *tried == Setting { step: tried.step, ..setting }
-            };
-            if longest.iter().any(too_long) {
-                continue;
-            }
-            let trial = sample.try_setting(setting, (first, &system));
-            let shorter = trial.excess.max(1.0).powf(-HIGHEST_ORDER.recip());
-            longest.extend((shorter > 0.0).then_some((setting, step * shorter)));
-            let expected = cost(&setting, precision) + trial.missed * per_shot;
-            if let Some(calibration) = trial.calibration.filter(|_| expected < least) {
-                best = Some((expected, calibration));
+        let sample = Sample::new(plans, own, (by_speed, set))?;
+        let shots = plans.len();
+        let mut chosen =
+            Self { tiers: Vec::new(), first: (first.clone(), system), reached: 0.0, shots };
+        let mut rest = vec![OF_ADAPTIVE; shots];
+        for tried in sample.halved.iter().rev() {
+            let trial = sample.trial(tried, &rest);
+            if trial.expected < LESS * mean(&rest) {
+                rest = chosen.add(trial);
             }
         }
-        let best = best.map(|(_, calibration)| calibration);
-        best.ok_or("no setting that is right enough costs less")
+        // Errors over the condition are no larger with shorter steps.
+        while let Some(last) = chosen.tiers.last().cloned()
+            && 0.5 * last.setting.step >= SHORTEST
+        {
+            let setting = Setting { step: 0.5 * last.setting.step, ..last.setting };
+            chosen.tiers.push(Tier { setting, ..last });
+        }
+        let mut tried = Vec::new();
+        while let Some(trial) = sample.sooner(&rest, &mut tried) {
+            rest = chosen.add(trial);
+        }
+        match chosen.tiers.is_empty() {
+            true => Err("no setting that is right enough costs less"),
+            false => Ok(chosen),
+        }
     }
 
     /// Places from 0 of the calibration shots in a batch: the least and the largest value of each
@@ -173,127 +235,297 @@ impl Calibration {
         Some(places)
     }
 
-    /// Shots of plans with equal steps; `None` of those that are not right enough or not of
-    /// the family.
-    pub(crate) fn run(&self, plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+    /// Adds a setting in front of the others; what each calibration shot then costs.
+    fn add(&mut self, trial: Trial) -> Vec<f64> {
+        if self.tiers.is_empty() {
+            self.reached = trial.reached;
+        }
+        self.reached = self.reached.max(trial.reached);
+        self.tiers.insert(0, trial.tier);
+        trial.costs
+    }
+
+    /// What is tried on shots, in this order.
+    pub(crate) fn tiers(&self) -> &[Tier] {
+        &self.tiers
+    }
+
+    /// Shots of plans with equal steps; `None` of those that fail or are not of the family.
+    pub(crate) fn run(
+        &self,
+        tier: &Tier,
+        plans: &[&Plan],
+        set: InstructionSet,
+    ) -> Vec<Option<Shot>> {
         let (first, system) = &self.first;
         let mut systems = systems(plans);
         for (plan, own) in plans.iter().zip(&mut systems) {
             *own = own.take().filter(|_| belongs(plan, (first, system)));
         }
-        let shots = run_lanes(plans, &systems, set, &self.setting).into_iter();
-        shots.map(|shot| self.right_enough(shot?)).collect()
+        run_lanes(plans, &systems, set, &tier.setting)
     }
+}
 
+impl Record {
     /// The relative error of a shot's times of flight.
-    fn estimate(&self, shot: &Shot) -> f64 {
-        let Conditioning { forces, interpolation } = shot.conditioning;
-        self.error * forces + MARGIN * interpolation
+    fn estimate(&self, Conditioning { forces, interpolation }: &Conditioning) -> f64 {
+        self.error * forces + self.margin * interpolation + kink(*interpolation, self.usual)
+    }
+}
+
+/// How wrong a kink may make times of flight.
+fn kink(interpolation: f64, usual: f64) -> f64 {
+    OF_KINKS * (interpolation - OF_USUAL * usual).max(0.0)
+}
+
+impl Tier {
+    fn record(&self, plan: &Plan) -> Option<&Record> {
+        let own = speed_m_s(plan);
+        let next = self.records.partition_point(|record| record.speed_m_s < own);
+        let near = self.records.get(next.saturating_sub(1)..)?.iter().take(2);
+        let off = |record: &Record| (record.speed_m_s - own).abs();
+        near.min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
-    /// The shot with its estimate, if that is what was asked.
-    fn right_enough(&self, mut shot: Shot) -> Option<Shot> {
-        let reached = self.estimate(&shot);
-        let sure = is_alone(&shot) && !may_flip(shot.passage.as_ref().ok()?, self.height_error);
-        let right = reached <= shot.accuracy_asked && sure;
+    /// Whether it is worth trying at a plan's speed.
+    pub(crate) fn serves(&self, plan: &Plan) -> bool {
+        self.record(plan).is_some_and(|record| record.serves)
+    }
+
+    /// Estimates the error of a shot. Whether it is what was asked, and does not differ by more
+    /// than both estimates from the shot of another setting: what a kink near a peak does depends
+    /// on where steps lie.
+    pub(crate) fn is_right(&self, plan: &Plan, shot: &mut Shot, other: Option<&Shot>) -> bool {
+        let Some(record) = self.record(plan) else {
+            return false;
+        };
+        let reached = record.estimate(&shot.conditioning);
         shot.accuracy_reached = Some(reached);
-        right.then_some(shot)
+        let agrees = |other: &Shot| {
+            shot.change(other) <= reached + other.accuracy_reached.unwrap_or(f64::INFINITY)
+        };
+        let passage = shot.passage.as_ref();
+        reached <= shot.accuracy_asked
+            && (!self.setting.passed || is_alone(shot))
+            && passage.is_ok_and(|passage| !may_flip(passage, self.height_error))
+            && other.is_none_or(agrees)
     }
 }
 
 impl Display for Calibration {
     fn fmt(&self, f: &mut Formatter<'_>) -> Formatted {
-        let precision = match self.setting.precision {
+        let precision = |tier: &Tier| match tier.setting.precision {
             Some(Precision::Single) => "single",
             _ => "double",
         };
+        let tier = |tier: &Tier| {
+            format!("{} precision, steps of {} contact times", precision(tier), tier.setting.step)
+        };
+        let tiers: Vec<String> = self.tiers.iter().map(tier).collect();
         write!(
             f,
-            "{precision} precision, steps of {} contact times, chosen by {} calibration shots that are right to {:.0e}",
-            self.setting.step, self.shots, self.reached
+            "{}, chosen by {} calibration shots that are right to {:.0e}",
+            tiers.join(", then "),
+            self.shots,
+            self.reached
         )
     }
 }
 
+/// A shot's interpolations differ by so much more than what is asked that it has a kink.
+fn is_smooth(shot: &Shot) -> bool {
+    shot.conditioning.interpolation <= SMOOTH * shot.accuracy_asked
+}
+
 impl<'a> Sample<'a> {
     /// With times of flight right to a small share of what is asked: steps are halved until that
-    /// changes none by more.
-    fn new(plans: &'a [Plan], own: Setting, set: InstructionSet) -> Result<Self, &'static str> {
-        let plans: Vec<&Plan> = plans.iter().collect();
+    /// changes none by more, but those of a few shots with kinks near their peaks.
+    fn new(
+        plans: &'a [Plan],
+        own: Setting,
+        (by_speed, set): (bool, InstructionSet),
+    ) -> Result<Self, &'static str> {
+        let mut plans: Vec<&Plan> = plans.iter().collect();
+        plans.sort_by(|a, b| speed_m_s(a).total_cmp(&speed_m_s(b)));
         let systems = systems(&plans);
-        let run = |step: f64| {
-            let setting =
-                Setting { step, precision: Some(Precision::Double), openings: true, ..own };
-            let shots = side_by_side(&plans, &systems, set, &setting).into_iter();
-            let shots: Option<Vec<Shot>> = shots.collect();
-            shots.ok_or("calibration shots are not finished by equal steps")
+        let run = |setting: Setting| {
+            let shots = side_by_side(&plans, &systems, set, &setting);
+            (setting, shots)
         };
-        let mut step = own.step;
-        let mut exact = run(step)?;
-        for _ in 0..MOST_HALVINGS {
-            if !exact.iter().all(is_alone) {
+        let precision = Some(Precision::Double);
+        let setting = Setting { precision, openings: true, shapes: false, ..own };
+        let mut halved = vec![run(setting)];
+        for halving in 1..=MOST_HALVINGS {
+            let step = own.step * 0.5_f64.powi(halving as i32);
+            let alone = halved[halving - 1].1.iter().flatten().all(is_alone);
+            if !alone && (step < SHORTEST || !by_speed) {
                 return Err("several maxima compete for the reflected pulse");
             }
-            step *= 0.5;
-            let coarse = std::mem::replace(&mut exact, run(step)?);
-            let right = |(fine, coarse): (&Shot, &Shot)| {
-                fine.change(coarse) <= OF_HALVING * fine.accuracy_asked / TIGHTER
+            halved.push(run(Setting { step, ..setting }));
+            let [.., (_, coarse), (_, fine)] = &halved[..] else { break };
+            let converged = |(coarse, fine): (&Option<Shot>, &Option<Shot>)| {
+                let (coarse, fine) = (coarse.as_ref()?, fine.as_ref()?);
+                let change = fine.change(coarse);
+                let right = change <= OF_HALVING * fine.accuracy_asked / TIGHTER;
+                (right && is_smooth(coarse) && is_smooth(fine)).then(|| fine.clone())
             };
-            if exact.iter().zip(&coarse).all(right) {
-                return Ok(Self { plans, systems, exact, set });
+            let exact: Vec<Option<Shot>> = coarse.iter().zip(fine).map(converged).collect();
+            let converged = exact.iter().flatten().count() as f64;
+            if converged >= CONVERGED * plans.len() as f64 {
+                return Ok(Self { plans, systems, exact, halved, set, by_speed });
             }
         }
         Err("calibration shots do not converge")
     }
 
-    /// What the shots give with a setting.
-    fn try_setting(&self, setting: Setting, (first, system): (&Plan, &Arc<System>)) -> Trial {
-        let shots = side_by_side(&self.plans, &self.systems, self.set, &setting);
-        let pairs = || shots.iter().zip(&self.exact);
-        let known = || pairs().filter_map(|(shot, exact)| Some((shot.as_ref()?, exact)));
-        let same = || known().filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
-        let heights = same().map(|(shot, exact)| shot.peaks_change(exact));
-        let height_error = OF_HEIGHTS * heights.fold(first.accuracy / TIGHTER, f64::max);
-        let rest = first.accuracy / TIGHTER;
-        let errors =
-            same().map(|(shot, exact)| (shot.change(exact) + rest) / shot.conditioning.forces);
-        let calibration = Calibration {
-            setting,
-            first: (first.clone(), system.clone()),
-            error: MARGIN * errors.fold(0.0, f64::max),
-            height_error,
-            reached: 0.0,
-            shots: self.plans.len(),
+    /// What a setting is worth, in front of others with which each shot costs `rest`.
+    fn trial(&self, (setting, shots): &Tried, rest: &[f64]) -> Trial {
+        let tier = self.tier(setting, shots);
+        let right = |at: usize| {
+            let mut shot = shots[at].clone()?;
+            tier.is_right(self.plans[at], &mut shot, None).then_some(shot)
         };
-        let estimates = known().map(|(shot, _)| calibration.estimate(shot));
-        let excess = median(estimates.collect()) / first.accuracy;
-        let right = |shot: &Shot| calibration.right_enough(shot.clone());
-        let hidden = |(shot, exact): (&Shot, &Shot)| {
-            right(shot).is_some_and(|shot| shot.change(exact) > shot.accuracy_asked)
+        let right: Vec<Option<Shot>> = (0..shots.len()).map(right).collect();
+        let hidden = |(shot, exact): (&Shot, &Shot)| shot.change(exact) > shot.accuracy_asked;
+        let hides = pairs(&right, &self.exact).any(hidden);
+        let mut tier = tier;
+        let near = self.near();
+        for (record, near) in tier.records.iter_mut().zip(near) {
+            record.serves = right[near].iter().any(Option::is_some);
+        }
+        let cost = |((record, right), rest): ((&Record, &Option<Shot>), &f64)| {
+            let own = if record.serves { cost(setting) } else { 0.0 };
+            own + if right.is_some() { 0.0 } else { *rest }
         };
-        let is_hidden = known().any(hidden);
-        let right: Vec<Shot> = shots.iter().flatten().filter_map(right).collect();
-        let reached = right.iter().filter_map(|shot| shot.accuracy_reached);
-        let reached = reached.fold(0.0, f64::max);
-        let missed = 1.0 - right.len() as f64 / self.plans.len() as f64;
-        let calibration = (!is_hidden).then_some(Calibration { reached, ..calibration });
-        Trial { calibration, missed, excess }
+        let costs: Vec<f64> = tier.records.iter().zip(&right).zip(rest).map(cost).collect();
+        let expected = if hides { f64::INFINITY } else { mean(&costs) };
+        let estimates = |shots: &[Option<Shot>]| -> Vec<f64> {
+            shots.iter().flatten().filter_map(|shot| shot.accuracy_reached).collect()
+        };
+        let reached = estimates(&right).into_iter().fold(0.0, f64::max);
+        let all = shots.iter().zip(&tier.records).filter_map(|(shot, record)| {
+            let shot = shot.as_ref()?;
+            Some(record.error * shot.conditioning.forces / shot.accuracy_asked)
+        });
+        Trial { expected, costs, reached, excess: quantile(all.collect(), 0.25), tier }
+    }
+
+    /// For each calibration shot those about its speed.
+    fn near(&self) -> impl Iterator<Item = Range<usize>> + use<> {
+        let (count, by_speed) = (self.plans.len(), self.by_speed);
+        (0..count).map(move |at| match by_speed {
+            true => {
+                let first = at.saturating_sub(NEAREST / 2).min(count.saturating_sub(NEAREST));
+                first..(first + NEAREST).min(count)
+            }
+            false => 0..count,
+        })
+    }
+
+    /// A setting with what its shots show.
+    fn tier(&self, setting: &Setting, shots: &[Option<Shot>]) -> Tier {
+        let accuracy = self.plans[0].accuracy;
+        let rest = accuracy / TIGHTER;
+        let same = |shots: &'_ [Option<Shot>], exact: &'_ [Option<Shot>]| -> Vec<(Shot, f64)> {
+            let same =
+                pairs(shots, exact).filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
+            same.map(|(shot, exact)| (shot.clone(), shot.change(exact) + rest)).collect()
+        };
+        let competing = if setting.passed { 1.0 } else { OF_COMPETING };
+        let margin = competing * MARGIN[usize::from(self.by_speed)];
+        let record = |(at, near): (usize, Range<usize>)| {
+            let known = shots[near.clone()].iter().flatten();
+            let usual = quantile(known.map(|shot| shot.conditioning.interpolation).collect(), 0.5);
+            let errors = same(&shots[near.clone()], &self.exact[near]);
+            let smooth =
+                |(shot, _): &&(Shot, f64)| kink(shot.conditioning.interpolation, usual) <= rest;
+            let errors = errors.iter().filter(smooth);
+            let errors = errors.map(|(shot, error)| error / shot.conditioning.forces);
+            let error = margin * errors.reduce(f64::max).unwrap_or(f64::INFINITY);
+            let speed_m_s = speed_m_s(self.plans[at]);
+            Record { speed_m_s, error, margin, usual, serves: true }
+        };
+        let heights =
+            pairs(shots, &self.exact).filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
+        let heights = heights.map(|(shot, exact)| shot.peaks_change(exact));
+        Tier {
+            setting: *setting,
+            records: self.near().enumerate().map(record).collect(),
+            height_error: OF_HEIGHTS * heights.fold(rest, f64::max),
+        }
+    }
+
+    /// The setting that makes shots cheapest in front of others with which each costs `rest`.
+    fn sooner(&self, rest: &[f64], tried: &mut Vec<Tried>) -> Option<Trial> {
+        let passed = self.exact.iter().flatten().all(is_alone);
+        // Steps too long for strong losses make motion that never ends.
+        let durations_s = self.exact.iter().flatten().map(|shot| shot.duration_s);
+        let longest_s = LONGEST * durations_s.fold(0.0, f64::max);
+        let mut best: Option<Trial> = None;
+        // The longest step worth trying, of each kind of setting.
+        let mut longest: Vec<(Setting, f64)> = Vec::new();
+        // Rounding moves maxima that compete further than calibration shots show.
+        let right = |setting: &Setting| passed || setting.precision == Some(Precision::Double);
+        for setting in settings((passed, longest_s)).into_iter().filter(right) {
+            let least = best.as_ref().map_or(LESS * mean(rest), |best| best.expected);
+            if cost(&setting) >= least {
+                break;
+            }
+            let too_long = |(tried, longest): &(Setting, f64)| {
+                setting.step > *longest && *tried == Setting { step: tried.step, ..setting }
+            };
+            if longest.iter().any(too_long) {
+                continue;
+            }
+            let at = tried.iter().position(|(known, _)| *known == setting).unwrap_or_else(|| {
+                let shots = side_by_side(&self.plans, &self.systems, self.set, &setting);
+                tried.push((setting, shots));
+                tried.len() - 1
+            });
+            let trial = self.trial(&tried[at], rest);
+            let shorter = trial.excess.max(1.0).powf(-HIGHEST_ORDER.recip());
+            longest.extend((shorter > 0.0).then_some((setting, setting.step * shorter)));
+            best = Some(trial).filter(|trial| trial.expected < least).or(best);
+        }
+        best
     }
 }
 
 /// What calibration shots give with one setting.
 struct Trial {
-    /// `None` where a shot is wrong and does not show it.
-    calibration: Option<Calibration>,
-    /// Share of shots that are not right enough.
-    missed: f64,
-    /// Median of the estimates over the accuracy asked.
+    tier: Tier,
+    /// Cost of each calibration shot.
+    costs: Vec<f64>,
+    /// Their mean; infinite where one is wrong and does not show it.
+    expected: f64,
+    /// Largest estimate of those that are right enough.
+    reached: f64,
+    /// Lower quartile of the estimates over the accuracy asked.
     excess: f64,
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+/// Shots that both of two computations have.
+fn pairs<'a>(
+    one: &'a [Option<Shot>],
+    other: &'a [Option<Shot>],
+) -> impl Iterator<Item = (&'a Shot, &'a Shot)> {
+    one.iter().zip(other).filter_map(|(one, other)| Some((one.as_ref()?, other.as_ref()?)))
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn speed_m_s(plan: &Plan) -> f64 {
+    match plan.chain.start {
+        Start::Striker { speed_m_s, .. } => speed_m_s,
+        _ => 0.0,
+    }
+}
+
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::INFINITY)
+    values.get((share * values.len() as f64) as usize).copied().unwrap_or(f64::INFINITY)
 }
 
 /// Shots of all plans with a setting, on all threads.
@@ -318,10 +550,11 @@ fn is_alone(shot: &Shot) -> bool {
 }
 
 /// Cost of a shot, in steps of single precision a contact time.
-fn cost(setting: &Setting, precision: Precision) -> f64 {
-    let double = if precision == Precision::Double { OF_DOUBLE } else { 1.0 };
+fn cost(setting: &Setting) -> f64 {
+    let double = if setting.precision == Some(Precision::Single) { 1.0 } else { OF_DOUBLE };
     let openings = if setting.openings { OF_OPENINGS } else { 1.0 };
-    double * openings / setting.step
+    let waiting = if setting.passed { 1.0 } else { OF_WAITING };
+    double * openings * waiting / setting.step
 }
 
 /// Whether a plan is of a family.

@@ -53,20 +53,38 @@ pub fn run_plans(
         });
         return shots.into_iter().map(|(_, shot)| shot).collect();
     };
-    let shots = in_blocks(&all, &|block| {
-        let shots = calibration.run(block, set);
-        shots.iter().flatten().for_each(|_| progress());
-        shots
-    });
+    let mut shots: Vec<Option<Shot>> = vec![None; plans.len()];
+    let mut open: Vec<usize> = (0..plans.len()).collect();
+    for tier in calibration.tiers() {
+        let (here, mut later): (Vec<usize>, Vec<usize>) =
+            open.into_iter().partition(|&at| tier.serves(&plans[at]));
+        let together: Vec<&Plan> = here.iter().map(|&at| &plans[at]).collect();
+        let run = in_blocks(&together, &|block| calibration.run(tier, block, set));
+        for (at, (_, shot)) in here.into_iter().zip(run) {
+            let Some(mut shot) = shot else {
+                later.push(at);
+                continue;
+            };
+            match tier.is_right(&plans[at], &mut shot, shots[at].as_ref()) {
+                true => progress(),
+                false => later.push(at),
+            }
+            shots[at] = Some(shot);
+        }
+        open = later;
+    }
+    for at in open {
+        shots[at] = None;
+    }
     // What needs a closer look takes the adaptive loop.
-    let closer = |(at, shot): (usize, Option<Shot>)| {
+    let closer = |(plan, shot): (&Plan, Option<Shot>)| {
         shot.map(Ok).unwrap_or_else(|| {
-            let shot = shoot_checked(&plans[at]);
+            let shot = shoot_checked(plan);
             progress();
             shot
         })
     };
-    shots.into_par_iter().map(closer).collect()
+    plans.par_iter().zip(shots).map(closer).collect()
 }
 
 /// Runs plans that go together block by block, on all threads; results are in order.
@@ -235,12 +253,21 @@ pub(crate) struct Setting {
     /// Shots end once the reflected pulse has passed, not when none can come
     /// any more.
     pub passed: bool,
+    /// Shots that last longer fail.
+    pub longest_s: f64,
 }
 
 impl Setting {
     pub(crate) fn of(plan: &Plan) -> Option<Self> {
         let (step, openings) = accuracy::equal_steps(plan)?;
-        Some(Self { step, precision: None, openings, shapes: true, passed: false })
+        Some(Self {
+            step,
+            precision: None,
+            openings,
+            shapes: true,
+            passed: false,
+            longest_s: f64::INFINITY,
+        })
     }
 
     fn precision(&self, plan: &Plan, system: &System) -> Precision {
@@ -283,7 +310,8 @@ pub(crate) fn run_lanes(
         .map(|(plan, system)| ensemble::Shot {
             system,
             step: setting.step,
-            duration_s: duration::with_equal_steps_s(plan, system, setting.step),
+            duration_s: duration::with_equal_steps_s(plan, system, setting.step)
+                .min(setting.longest_s),
             precision: setting.precision(plan, system),
         })
         .collect();

@@ -94,7 +94,7 @@ impl<N: Number<W>, const W: usize> LaneTrace<'_, N, W> {
         let maximum = Maximum { time_s: self.clock.step_s * (middle + at), value };
         let step_s = self.clock.step_s;
         let interpolation = match equidistant {
-            true => quartic_differs(values, at),
+            true => quartic_differs(polynomial, curvature),
             false => f64::INFINITY,
         };
         let shape = Shape {
@@ -121,24 +121,13 @@ fn through_equidistant([a, b, c, d, e, f, g]: [f64; POINTS]) -> [f64; POINTS] {
     ]
 }
 
-/// How far the maximum of the quartic through the five middle samples is from that of the
-/// polynomial through all seven, in steps: a kink near the top, or another maximum, moves both apart.
-fn quartic_differs([_, b, c, d, e, f, _]: [f64; POINTS], at: f64) -> f64 {
-    let (odd1, odd2, even1, even2) = (e - c, f - b, e + c, f + b);
-    let quartic = [
-        d,
-        (8.0 * odd1 - odd2) / 12.0,
-        (16.0 * even1 - even2 - 30.0 * d) / 24.0,
-        (odd2 - 2.0 * odd1) / 12.0,
-        (even2 - 4.0 * even1 + 6.0 * d) / 24.0,
-        0.0,
-        0.0,
-    ];
-    let (_, slope, curvature) = derivatives(&quartic, at);
-    match curvature < 0.0 {
-        true => (slope / curvature).abs(),
-        false => f64::INFINITY,
-    }
+/// How far apart, in steps, the maxima of the polynomial and of the quartic through its five middle
+/// samples may be: a kink near the top, or another maximum, moves both.
+///
+/// Their slopes differ by a₅ (5x⁴ − 15x² + 4) + a₆ (6x⁵ − 20x³ + 8x), x from the middle. Each term is
+/// taken as large as it gets within half a step of it: what they cancel depends on where a kink lies.
+fn quartic_differs([.., a5, a6]: [f64; POINTS], curvature: f64) -> f64 {
+    (4.0 * a5.abs() + 2.0 * a6.abs()) / -curvature.min(-0.0)
 }
 
 /// Coefficients of the polynomial through points, by divided differences.
