@@ -40,6 +40,7 @@ let asked = 0;
 async function load(text) {
   form.forget();
   story.end();
+  fit.forget();
   state.fresh = true;
   await change([], { text });
 }
@@ -172,6 +173,11 @@ function takeShot(shot, draft) {
   shot.energy ??= state.fresh ? null : state.shot?.energy ?? null;
   state.shot = shot;
   state.motion = motion ? new Motion(shot) : null;
+  const bare = Boolean(state.outline?.dimensionless);
+  if (bare !== state.bare || (bare && state.fresh)) {
+    state.bare = bare;
+    setPaces();
+  }
   if (state.fresh) {
     state.fresh = false;
     // A first look: the pulse half-way to the wall.
@@ -486,7 +492,7 @@ async function copied(what) {
   const fragment = await packed({ text, whole, curveScale, curveView, time, magnify: $("#magnify").value, reference: state.reference?.name, pinned: pinned?.text, data: table });
   history.replaceState(null, "", fragment);
   await copy(location.href);
-  return toast("The link is on the clipboard; for another machine, put its part from # behind the address of the explorer there");
+  return toast(`The link is on the clipboard; for another machine, put its part from # behind the address of the explorer there${data?.examples ? ". The recording itself is not in it" : ""}`);
 }
 
 // ---- Controls of the page.
@@ -569,12 +575,17 @@ function bind() {
   bindTabs();
   bindFiles();
   document.addEventListener("keydown", keys);
+  // A link of another row in the same tab changes the fragment alone.
+  addEventListener("hashchange", () => location.hash.startsWith("#s=") && location.reload());
   document.addEventListener("click", (event) => event.target.closest(".menu") || closeMenus());
   new ResizeObserver(() => state.motion && showTime()).observe($("#row"));
 }
 
 function closeMenus() {
-  for (const menu of document.querySelectorAll(".menu[open]")) menu.open = false;
+  for (const menu of document.querySelectorAll(".menu[open]")) {
+    if (menu.contains(document.activeElement)) menu.querySelector("summary").focus();
+    menu.open = false;
+  }
 }
 
 /** Dragging along the row scrubs. */
@@ -676,6 +687,10 @@ async function main() {
     change: (edits) => change(edits),
     setData: (data) => {
       if (data?.examples) for (const example of data.examples) example.channels = example.volts.map(decoded);
+      // A table keeps the recording that lies over the signals, and a recording without speeds the table.
+      const { examples, picks, points, table } = state.data ?? {};
+      if (data?.kind === "table") data = { ...data, examples, picks };
+      else if (data && !data.points?.length && points) data = { ...data, points, table };
       state.data = data;
       fit.show(state.tree);
       if (state.shot) plots.drawSignals(state);

@@ -155,6 +155,12 @@ export class Fit {
     this.page.setData(null);
   }
 
+  /** Another row is shown: results were of the one before. */
+  forget() {
+    this.result.replaceChildren();
+    this.state.replaceChildren();
+  }
+
   say(text) {
     this.about.replaceChildren(html("p", { class: "error" }, text));
   }

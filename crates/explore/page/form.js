@@ -85,14 +85,19 @@ export class Form {
   }
 
   build() {
-    const focused = document.activeElement?.dataset?.path;
+    const active = this.place.contains(document.activeElement) ? document.activeElement : null;
+    const { path: focused, stay } = active?.dataset ?? {};
+    const within = active?.closest("[data-group]")?.dataset.group;
     const end = this.place.scrollTop;
     this.fields.clear();
     const keys = [...new Set([...ORDER, ...Object.keys(this.tree)])].filter((key) => this.tree[key] !== undefined && this.schema.properties[key]);
     const groups = keys.map((key) => this.group(key));
     this.place.replaceChildren(...groups, this.adder([], this.schema, this.tree, "Add to the experiment…"));
     this.place.scrollTop = end;
-    if (focused) this.place.querySelector(`[data-path="${CSS.escape(focused)}"]`)?.focus();
+    if (!active) return;
+    // What had the focus may be gone: its table's heading is near.
+    const near = [focused && `[data-path="${CSS.escape(focused)}"]`, stay && `[data-stay="${CSS.escape(stay)}"]`, within && `[data-group="${within}"] > summary`, "summary"];
+    near.filter(Boolean).map((one) => this.place.querySelector(one)).find(Boolean)?.focus({ preventScroll: true });
   }
 
   group(key) {
@@ -200,7 +205,18 @@ export class Form {
   }
 
   select(title, options, choose, name = title) {
-    const list = html("select", { "aria-label": name, onchange: (event) => event.target.value && choose(event.target.value) }, [html("option", { value: "" }, title), ...options.map(([value, text]) => html("option", { value }, text))]);
+    const list = html("select", { "aria-label": name, "data-stay": name, "aria-description": "Arrow keys choose, Enter adds" }, [html("option", { value: "" }, title), ...options.map(([value, text]) => html("option", { value }, text))]);
+    // Arrow keys change a closed list step by step: what they pass is not meant.
+    let keyed = false;
+    const add = () => list.value && choose(list.value);
+    list.addEventListener("pointerdown", () => (keyed = false));
+    list.addEventListener("change", () => keyed || add());
+    list.addEventListener("keydown", (event) => {
+      keyed = event.key !== "Enter";
+      if (keyed || !list.value) return;
+      event.preventDefault();
+      add();
+    });
     return html("div", { class: "add" }, list);
   }
 
@@ -234,7 +250,7 @@ export class Form {
     }
     if (types.includes("array")) {
       if (key === "laws") return ["elastic_hertz"];
-      return schema.items?.type === "integer" ? [Math.max(1, schema.items.minimum ?? 1)] : [{ ...this.fresh(schema.items), ...(key === "gaps" ? { contact: 10, gap: SUGGESTED.gap } : {}), ...(key === "initial" ? { bead: 1, velocity: SUGGESTED.velocity } : {}) }];
+      return schema.items?.type === "integer" ? [Math.max(1, schema.items.minimum ?? 1)] : [{ ...this.fresh(schema.items), ...(key === "gaps" ? { contact: this.within(10), gap: SUGGESTED.gap } : {}), ...(key === "initial" ? { bead: 1, velocity: SUGGESTED.velocity } : {}) }];
     }
     if (types.includes("boolean")) return true;
     if (types.includes("integer")) return Math.max(1, schema.minimum ?? 1);
@@ -242,6 +258,12 @@ export class Form {
     if (schema.examples) return schema.examples[0];
     if (/poisson/i.test(`${key}${schema.description}`)) return 0.3;
     return types.includes("number") ? 1 : "name";
+  }
+
+  /** A contact's number that the row has. */
+  within(contact) {
+    const beads = (this.tree.beads ?? []).map((one) => one.count ?? (one.cell?.length ?? 1) * (one.repeat ?? 1));
+    return Math.max(1, Math.min(contact, beads.reduce((all, one) => all + one, 0) - 1));
   }
 
   at(path) {

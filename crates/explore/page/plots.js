@@ -74,6 +74,7 @@ export class Plots {
     }
     const marks = [["incident", "incident"], ["wall", "wall"], ["reflected", "reflected"]].flatMap(([key, name]) =>
       shot[key] ? [{ x: shot[key].time_s * of.scale, y: shot[key].value_n, text: of.t(shot[key].time_s), colour: colour(name) }] : []);
+    for (const { picks } of overlay) marks.push(...picks.map((one) => ({ x: one.time * of.scale, y: one.y, colour: colour("record") })));
     this.signals.draw({
       x: { label: of.time, from: 0, to: end },
       y: { label: of.force },
@@ -273,7 +274,9 @@ function aligned(state) {
     }
     const model = modelled(shot.motion, channel, example.channels.length === 1);
     const residual = y.map((value, at) => value - model(time[at]));
-    return { name: `recorded ${example.names[channel] ?? ""}`.trim(), time, y, residual, rms: size(shot, time, residual) };
+    const seen = channel === 1 ? [picks.wall] : [picks.incident, ...(example.channels.length === 1 ? [picks.wall] : []), picks.reflected];
+    const picked = seen.filter(Boolean).map((one) => ({ time: one.time_s + shift, y: Math.abs(scale * one.height_v) }));
+    return { picks: picked, name: `recorded ${example.names[channel] ?? ""}`.trim(), time, y, residual, rms: size(shot, time, residual) };
   });
 }
 

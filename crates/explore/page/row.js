@@ -30,6 +30,7 @@ export class Motion {
     this.samples = motion.samples;
     this.interval = motion.interval_s;
     this.end = (motion.samples - 1) * motion.interval_s;
+    this.turns = shot.wall?.time_s ?? Infinity;
     this.displacement = motion.displacement;
     this.force = motion.force;
     this.contacts = Math.max(0, bodies.length - 1);
@@ -130,7 +131,7 @@ export function drawRow(canvas, motion, time, magnify, most, size = {}) {
   const wide = (text) => pen.measureText(text).width;
   while (words.length > 1 && wide(words.join("; ")) > width - 12) words.pop();
   pen.fillText(words.join("; "), Math.max(6, Math.min(left, width - 6 - wide(words.join("; ")))), below);
-  drawLabels(pen, theme, { bodies, place, middle, scale, state, largest, width });
+  drawLabels(pen, theme, { bodies, place, middle, scale, state, largest, width, pulse: time > motion.turns ? "▼ reflection" : "▼ pulse" });
   return state;
 }
 
@@ -228,7 +229,7 @@ function drawBars(pen, theme, motion, state, place, { top, bottom }) {
   });
 }
 
-function drawLabels(pen, theme, { bodies, place, middle, scale, state, largest, width }) {
+function drawLabels(pen, theme, { bodies, place, middle, scale, state, largest, width, pulse }) {
   pen.font = "12px system-ui, sans-serif";
   pen.textAlign = "center";
   const above = middle - largest * scale - 14;
@@ -243,7 +244,7 @@ function drawLabels(pen, theme, { bodies, place, middle, scale, state, largest, 
     pen.fillText(text, x, above);
   };
   const sensor = bodies.findIndex((body) => body.sensor);
-  if (state.front >= 0) label("▼ pulse", (place[state.front] + place[state.front + 1]) / 2, theme.ink, true);
+  if (state.front >= 0) label(pulse, (place[state.front] + place[state.front + 1]) / 2, theme.ink, true);
   if (sensor >= 0) label(`sensor ${bodies[sensor].number}`, place[sensor], theme.incident, true);
   if (bodies[0].kind === "striker") label("striker", place[0], theme.soft);
   const last = bodies[bodies.length - 1];

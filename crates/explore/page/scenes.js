@@ -155,7 +155,7 @@ export const SCENES = [
         text: "Each bead is 5 % smaller than the one before. The pulse meets ever lighter beads and speeds up: its ridge in the map of forces bends.",
       },
       {
-        text: (state) => `The largest force is ${quantity(peak(state, 0), "N", 3)} in the first contact and ${quantity(peak(state, -1), "N", 3)} in the last one. What hits hard at one end arrives as a faster, weaker and longer-drawn push.`,
+        text: (state) => `The largest force is ${quantity(peak(state, 0), "N", 3)} in the first contact and ${quantity(peak(state, -1), "N", 3)} in the last one. What hits hard at one end arrives as a faster, weaker and shorter push.`,
       },
       {
         edits: [set(["beads", 0, "radius_ratio"], 0.9), set(["title"], "Tapered chain: each bead 10 % smaller than the one before")],

@@ -42,7 +42,7 @@ impl Verbs for Library {
     }
 }
 
-/// A recording or a table, by what its first line has; readers take files, so it is one for a while.
+/// A recording, or a table if its first line names a column of speeds; readers take files, so it is one for a while.
 fn measured(recording: &Recording) -> Result<Value, Failure> {
     let options: MeasureOptions = from_json("measure", recording.options.clone())?;
     let unwritten =
@@ -50,7 +50,7 @@ fn measured(recording: &Recording) -> Result<Value, Failure> {
     let folder = tempfile::tempdir().map_err(unwritten)?;
     let file = folder.path().join(plain(&recording.name));
     std::fs::write(&file, &recording.bytes).map_err(unwritten)?;
-    let found = match inference::is_table(&file, false)? {
+    let found = match inference::is_table(&file, true)? {
         true => table(&recording.name, &recording.bytes),
         false => recorded(&file, &options),
     };

@@ -289,6 +289,22 @@ const tests = {
     await page.context().close();
   },
 
+  async "a list that adds waits for Enter, and the focus stays in the form"() {
+    const page = await opened();
+    const before = await page.inputValue("#text");
+    const list = page.locator("[data-group=striker] [data-stay]").first();
+    await list.focus();
+    const options = await list.locator("option").evaluateAll((all) => all.map((one) => one.value));
+    for (const key of ["ArrowDown", "ArrowDown"]) await page.keyboard.press(key);
+    assert.equal(await list.inputValue(), options[2]);
+    assert.equal(await page.inputValue("#text"), before);
+    await page.keyboard.press("Enter");
+    await page.waitForFunction((before) => document.querySelector("#text").value !== before, before);
+    assert.match(await page.inputValue("#text"), new RegExp(`\\[striker\\][^\\[]*${options[2]} =`));
+    await page.waitForFunction(() => document.querySelector("#pane-controls").contains(document.activeElement));
+    await page.context().close();
+  },
+
   async "every scene can be gone through by keyboard"() {
     const page = await opened();
     const ids = await page.locator("#scene option").evaluateAll((all) => all.map((one) => one.value).filter(Boolean));
@@ -347,6 +363,17 @@ const tests = {
     assert.match(await page.innerText("#signals .note"), /residual 0\.\d+ %/);
     assert.match(await page.textContent("#signals svg"), /residual/);
     await look(page, "recording");
+    // Headings that name no times, as other makers write them; decimal commas.
+    const german = lines.slice(1).map((line) => line.replaceAll(",", ";").replaceAll(".", ","));
+    for (const [name, text] of [
+      ["keysight.csv", ["x-axis,1,2", "second,Volt,Volt", ...lines.slice(1)]],
+      ["deutsch.csv", ["Zeit in s;Sensor in V;Wand in V", ...german]],
+    ]) {
+      writeFileSync(join(folder, name), `${text.join("\n")}\n`);
+      await page.setInputFiles("#file", join(folder, name));
+      await has(page, "#pane-fit table.result", name);
+      assert.match(await page.innerText("#pane-fit table.result"), /µs/, name);
+    }
     const marked = join(folder, "<img src=x onerror=document.title='executed'>.csv");
     writeFileSync(marked, `# <script>document.title='executed'</script>\n${lines.join("\n")}\n`);
     await page.setInputFiles("#file", marked);
