@@ -205,7 +205,7 @@ export class Form {
   }
 
   select(title, options, choose, name = title) {
-    const list = html("select", { "aria-label": name, "data-stay": name, "aria-description": "Arrow keys choose, Enter adds" }, [html("option", { value: "" }, title), ...options.map(([value, text]) => html("option", { value }, text))]);
+    const list = html("select", { "aria-label": name, "data-stay": name, title: "Arrow keys choose, Enter adds" }, [html("option", { value: "" }, title), ...options.map(([value, text]) => html("option", { value }, text))]);
     // Arrow keys change a closed list step by step: what they pass is not meant.
     let keyed = false;
     const add = () => list.value && choose(list.value);

@@ -42,7 +42,8 @@ impl Verbs for Library {
     }
 }
 
-/// A recording, or a table if its first line names a column of speeds; readers take files, so it is one for a while.
+/// A recording, or a table if its first line names a column of speeds. Readers take files, so it is
+/// one for a while.
 fn measured(recording: &Recording) -> Result<Value, Failure> {
     let options: MeasureOptions = from_json("measure", recording.options.clone())?;
     let unwritten =

@@ -36,6 +36,8 @@ pub struct LiveMeasurement {
     list: Option<Stamp>,
     seen: BTreeMap<PathBuf, Stamp>,
     measured: BTreeMap<PathBuf, (Stamp, Measurement)>,
+    /// Why the table of shots that is there now was not read, if so; the one before still holds.
+    pub list_error: Option<String>,
 }
 
 impl LiveMeasurement {
@@ -51,6 +53,7 @@ impl LiveMeasurement {
             list: arguments.shots.as_deref().and_then(stamp),
             seen: BTreeMap::new(),
             measured: BTreeMap::new(),
+            list_error: None,
         })
     }
 
@@ -82,6 +85,11 @@ impl LiveMeasurement {
         Ok(new.into_iter().map(|(file, _)| file).collect())
     }
 
+    /// Returns what came of a file, once it is measured.
+    pub fn measured(&self, file: &Path) -> Option<&Measurement> {
+        self.measured.get(file).map(|(_, measured)| measured)
+    }
+
     /// Whether all recordings that the last update has seen are measured.
     pub fn is_complete(&self) -> bool {
         self.seen.keys().all(|file| self.measured.contains_key(file))
@@ -99,14 +107,23 @@ impl LiveMeasurement {
     }
 
     /// Reads the table of shots again if it has changed, and forgets the files of which it says
-    /// something else now. One that can't be read is being written, and is read at the next update.
+    /// something else now. One that can't be read, and may still be written, is tried again when it
+    /// has changed.
     fn update_list(&mut self) {
         let Some(path) = self.arguments.shots.as_deref() else { return };
         let now = stamp(path);
         if now == self.list {
             return;
         }
-        let Ok(list) = measure::list(path) else { return };
+        self.list = now;
+        let list = match measure::list(path) {
+            Ok(list) => list,
+            Err(error) => {
+                self.list_error = Some(error.to_string());
+                return;
+            }
+        };
+        self.list_error = None;
         let before = self.options.list.replace(list.clone());
         let agrees = |measured: &Measurement| {
             let same =
@@ -114,7 +131,6 @@ impl LiveMeasurement {
             before.as_ref().is_some_and(same)
         };
         self.measured.retain(|_, (_, measured)| agrees(measured));
-        self.list = now;
     }
 }
 

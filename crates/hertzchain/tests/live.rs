@@ -26,6 +26,7 @@ impl Live {
             .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
             .spawn()
             .unwrap();
         let lines = BufReader::new(program.stdout.take().unwrap());
@@ -148,6 +149,26 @@ fn what_to_measure_next_follows_each_shot() {
         assert!(next.is_some_and(|next| next.contains("m/s")), "{line}");
     }
     assert_eq!(live.rest(), (0, true));
+}
+
+#[test]
+fn a_table_of_shots_that_breaks_is_reported_and_its_last_state_holds_until_it_is_mended() {
+    let (_, shots, list) = setup("live-list");
+    let into = shots.to_str().unwrap();
+    let mut live = Live::start(&[into, "--shots", &list, "--stop-after", STOP]);
+    record(&shots, Path::new(&list), 0);
+    assert_eq!(live.line()["mean"]["shots"], 1);
+    let good = fs::read_to_string(&list).unwrap();
+    fs::write(&list, good.replace("0.2", "fast")).unwrap();
+    write(&shots.join("later.csv"), &volts(0.3, 1.0));
+    assert_eq!(live.line()["mean"], Value::Null);
+    fs::write(&list, good + "later.csv,dry,0.3,0.001\n").unwrap();
+    assert_eq!(live.line()["shot"]["speed_m_s"]["value"], 0.3);
+    let mut program = live.program;
+    let mut reported = String::new();
+    program.stderr.take().unwrap().read_to_string(&mut reported).unwrap();
+    assert!(program.wait().unwrap().success(), "{reported}");
+    assert!(reported.contains("fast") && reported.contains("warning"), "{reported}");
 }
 
 #[test]

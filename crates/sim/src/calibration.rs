@@ -332,7 +332,7 @@ impl Display for Calibration {
     }
 }
 
-/// A shot's interpolations differ by so much more than what is asked that it has a kink.
+/// Whether interpolations of a shot's peaks agree to a small share of what is asked: no kink is near.
 fn is_smooth(shot: &Shot) -> bool {
     shot.conditioning.interpolation <= SMOOTH * shot.accuracy_asked
 }
@@ -380,7 +380,7 @@ impl<'a> Sample<'a> {
 
     /// What a setting is worth, in front of others with which each shot costs `rest`.
     fn trial(&self, (setting, shots): &Tried, rest: &[f64]) -> Trial {
-        let tier = self.tier(setting, shots);
+        let mut tier = self.tier(setting, shots);
         let right = |at: usize| {
             let mut shot = shots[at].clone()?;
             tier.is_right(self.plans[at], &mut shot, None).then_some(shot)
@@ -388,9 +388,7 @@ impl<'a> Sample<'a> {
         let right: Vec<Option<Shot>> = (0..shots.len()).map(right).collect();
         let hidden = |(shot, exact): (&Shot, &Shot)| shot.change(exact) > shot.accuracy_asked;
         let hides = pairs(&right, &self.exact).any(hidden);
-        let mut tier = tier;
-        let near = self.near();
-        for (record, near) in tier.records.iter_mut().zip(near) {
+        for (record, near) in tier.records.iter_mut().zip(self.near()) {
             record.serves = right[near].iter().any(Option::is_some);
         }
         let cost = |((record, right), rest): ((&Record, &Option<Shot>), &f64)| {

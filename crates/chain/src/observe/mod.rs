@@ -10,8 +10,6 @@ pub use self::{
         Competing, Flank, Passage, PassageError, Passages, Pulse, RETURN_WITHIN, WALL_WITHIN,
     },
     separation::{Apart, Separation},
-};
-pub use self::{
     signal::{Maximum, Shape, Signal, Stretch},
     tracer::{Trace, Tracer},
 };

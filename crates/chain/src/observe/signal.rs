@@ -296,7 +296,8 @@ impl Signal {
             .map(|(theta, slope)| self.slope(piece, theta, slope));
         let [start, .., end] = stretch.values;
         let floor = JUMP.max(OF_CUT * piece.cut_tolerance()) * self.largest;
-        if piece.sharp_rises(self.sensor).any(|from| from == 0.0) {
+        let sharp_rises = piece.sharp_rises(self.sensor);
+        if sharp_rises.contains(&Some(0.0)) {
             start_slope = first_change(piece, self.sensor, floor).unwrap_or(start_slope);
         }
         // Before a signal is first seen, and after silence, it was 0.
@@ -307,7 +308,7 @@ impl Signal {
             self.keep(Maximum { time_s, value: value.max(start) });
         }
         let mut inside = interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch);
-        for from in piece.sharp_rises(self.sensor).filter(|_| end_slope <= 0.0) {
+        for from in sharp_rises.into_iter().flatten().filter(|_| end_slope <= 0.0) {
             let start_s = piece.time_s(from);
             if inside.iter().all(|maximum| maximum.time_s <= start_s)
                 && let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, from, floor)

@@ -109,14 +109,14 @@ impl Piece<'_> {
     /// Whether a contact that a sensor sees has just closed, or is about to open, at `theta`:
     /// the slopes of some laws are infinite there.
     pub(crate) fn is_near_touch(&self, sensor: Sensor, theta: f64) -> bool {
-        self.closed_contacts(sensor).any(|contact| {
+        self.closed_contacts(sensor).into_iter().flatten().any(|contact| {
             let (overlap, rate) = self.overlap(contact, theta);
             overlap.abs() < NEAR_TOUCH * rate.abs() * self.step_s
         })
     }
 
     /// Closed contacts whose forces a sensor shows.
-    fn closed_contacts(&self, sensor: Sensor) -> impl Iterator<Item = usize> {
+    fn closed_contacts(&self, sensor: Sensor) -> [Option<usize>; 3] {
         let wall = self.system.contacts() - 1;
         let contacts = match sensor {
             Sensor::Bead(n) => [Some(self.before(n)), Some(n), None],
@@ -124,13 +124,14 @@ impl Piece<'_> {
             Sensor::BeadPlusWall(n) => [Some(self.before(n)), Some(n), Some(wall)],
             Sensor::Position(_) | Sensor::Velocity(_) => [None; 3],
         };
-        contacts.into_iter().flatten().filter(|&contact| !self.is_open(contact))
+        contacts.map(|contact| contact.filter(|&contact| !self.is_open(contact)))
     }
 
-    /// Where in the step a contact that a sensor shows begins to be pressed, at its touch or again: some
-    /// laws' forces rise there with an infinite slope, in overlap or in rate.
-    pub(crate) fn sharp_rises(&self, sensor: Sensor) -> impl Iterator<Item = f64> {
-        self.closed_contacts(sensor).filter_map(|contact| {
+    /// Where in the step each contact that a sensor shows begins to be pressed, at its touch or
+    /// again: some laws' forces rise there with an infinite slope, in overlap or in rate.
+    pub(crate) fn sharp_rises(&self, sensor: Sensor) -> [Option<f64>; 3] {
+        self.closed_contacts(sensor).map(|contact| {
+            let contact = contact?;
             let rate = |theta: f64| self.overlap(contact, theta).1;
             let (overlap, first) = self.overlap(contact, 0.0);
             let touches = first > 0.0 && overlap < NEAR_TOUCH * first * self.step_s;

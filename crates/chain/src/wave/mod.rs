@@ -23,8 +23,6 @@ mod zones;
 pub use self::{
     dense::Piece,
     energy::{Budget, Dissipated},
-};
-pub use self::{
     outcome::{Flow, Limits, Observer, Outcome, SolveError, Work},
     run::run,
     table::Table,

@@ -350,11 +350,16 @@ pub fn model(
     modelled: &Modelled,
     freed: &Freed,
 ) -> Result<Model, Failure> {
-    if freed.free.is_empty() {
-        return Err(user("nothing is free: --free names numbers, such as eta,B"));
-    }
+    needs_free(freed)?;
     let numbers: Result<Vec<_>, _> = numbers(experiment, freed).into_iter().collect();
     of_numbers(experiment, modelled, numbers.map_err(user)?)
+}
+
+fn needs_free(freed: &Freed) -> Result<(), Failure> {
+    match freed.free.is_empty() {
+        true => Err(user("nothing is free: --free names numbers, such as eta,B")),
+        false => Ok(()),
+    }
 }
 
 /// Free numbers of an experiment and systematic errors, in the order of the options.
@@ -398,9 +403,7 @@ pub fn problem(model: Model, data: Data, freed: &Freed) -> Result<CurveProblem, 
 /// Options, data and models that do not fit together.
 pub fn posed(pairs: &[(Data, Experiment)], options: &FitOptions) -> Result<CurveProblem, Failure> {
     let (modelled, freed) = (&options.modelled, &options.freed);
-    if freed.free.is_empty() {
-        return Err(user("nothing is free: --free names numbers, such as eta,B"));
-    }
+    needs_free(freed)?;
     if pairs.len() == 1 && !options.own.is_empty() {
         return Err(user("--own is for several tables (--also): leave it out"));
     }

@@ -18,8 +18,6 @@ pub use self::{
     band::FitCurve,
     candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, ways},
     joint::{CurveProblem, Supply},
-};
-pub use self::{
     model::{Model, Predicted, Speeds},
     problem::MeasuredCurve,
     surrogate::Surrogate,

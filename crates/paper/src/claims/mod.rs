@@ -16,8 +16,6 @@ pub use self::{
         evaluate_all_rounded, read,
     },
     evidence::{Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint, TofBranch},
-};
-pub use self::{
     predicates::find as predicate,
     report::{MEANING, claims_markdown, computed_text},
 };

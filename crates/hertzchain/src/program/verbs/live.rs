@@ -4,13 +4,13 @@ use super::measure::{summary, tables};
 use crate::live::LiveMeasurement;
 use crate::measure::{self, MeasureResult};
 use crate::options::{
-    DesignOptions, Input, LiveOptions, MeasureOptions, ModelOptions, ParameterOptions,
-    ReadingOptions, RowsAre, SampleType,
+    DesignOptions, LiveOptions, MeasureOptions, ModelOptions, ParameterOptions, ReadingOptions,
+    RowsAre, SampleType,
 };
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
 use crate::program::{format, print};
-use crate::{design, input};
+use crate::{design, inference};
 use hertzchain_measure::records::{SampleKind, StreamFormat, stream_pieces, write_npy};
 use hertzchain_measure::{Case, Level, MeasureError, Shot, SpeedRow, shots_at_level};
 use serde_json::{Value, json};
@@ -32,14 +32,18 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
         Folder::open(out)?;
     }
     print::note(&format!("measuring what comes into {}; Ctrl-C ends", folder.display()));
-    let mut last = Instant::now();
+    let (mut last, mut list_error) = (Instant::now(), None);
     loop {
         // Asked before the look, which then sees what the stream has brought last.
         let ended = recording.as_ref().is_some_and(JoinHandle::is_finished);
         let files = live.update()?;
+        if live.list_error != list_error {
+            list_error.clone_from(&live.list_error);
+            list_error.iter().for_each(|error| print::note(&format!("warning: {error}")));
+        }
         if !files.is_empty() {
             last = Instant::now();
-            report(arguments, &measured, &live.result(), &files)?;
+            report(arguments, &measured, &live, &files)?;
         }
         let stop = arguments.stop_after.map(|time| Duration::from_secs_f64(time.0));
         if stop.is_some_and(|stop| last.elapsed() > stop) || (ended && live.is_complete()) {
@@ -178,17 +182,17 @@ fn wrong(text: &str) -> Failure {
 fn report(
     arguments: &LiveOptions,
     measured: &MeasureOptions,
-    result: &MeasureResult,
+    live: &LiveMeasurement,
     files: &[PathBuf],
 ) -> Result<(), Failure> {
+    let result = &live.result();
     if let Some(out) = &measured.out {
         let mut folder = Folder::open(out)?;
         tables(&mut folder, &result.shots, &result.curves)?;
         folder.finish()?;
     }
-    for refused in &result.shots.refused {
-        print::note(&format!("refused: {refused}"));
-    }
+    let refused = files.iter().filter_map(|file| live.measured(file)).flat_map(|of| &of.refused);
+    refused.for_each(|refused| print::note(&format!("refused: {refused}")));
     let new: Vec<&Shot> =
         result.shots.shots.iter().filter(|shot| files.contains(&shot.file)).collect();
     let next = new.last().and_then(|shot| next(arguments, result, &shot.case));
@@ -215,20 +219,11 @@ fn place<'a>(result: &'a MeasureResult, shot: &Shot) -> Option<(&'a Case, &'a Sp
 type Next = Result<String, Failure>;
 
 fn next(arguments: &LiveOptions, result: &MeasureResult, case: &str) -> Option<Next> {
-    let model = arguments.model.as_ref()?;
-    let file = Some(PathBuf::from(model)).filter(|file| file.exists());
-    let preset = file.is_none().then(|| model.clone());
-    let options = DesignOptions {
-        modelled: ModelOptions {
-            model: file.clone(),
-            preset: preset.clone(),
-            ..ModelOptions::default()
-        },
-        freed: ParameterOptions { free: arguments.free.clone(), ..ParameterOptions::default() },
-        ..DesignOptions::default()
-    };
+    let modelled = ModelOptions::default().of_other(arguments.model.as_ref()?);
+    let freed = ParameterOptions { free: arguments.free.clone(), ..ParameterOptions::default() };
+    let options = DesignOptions { modelled, freed, ..DesignOptions::default() };
     let proposed = || {
-        let experiment = input::open(&Input { file, preset })?;
+        let experiment = inference::experiment(&options.modelled, Some(case))?;
         let (_, found) = design::design(&result.curve(case)?, &experiment, &options)?;
         let best = found.design.ranked.first().map(|best| &found.candidates[best.candidate]);
         best.map(|best| best.name.clone()).ok_or_else(|| wrong("nothing would help"))
@@ -252,7 +247,7 @@ fn line_text(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>
     let flags = flags.map_or(String::new(), |flags| format!("  [{flags}]"));
     let mut text = format!("{name}{number}{speed}  {times}{flags}\n");
     if let Some((case, row)) = place {
-        let mean = summary::micro(row.incident_s.weighted);
+        let mean = summary::mean(&row.incident_s, row.shared_s[0]);
         let (shots, speed) = (row.shots.0, format::digits(row.speed_m_s.value, 4));
         let named = summary::named(&case.name);
         text += &format!("  mean {mean} µs of {shots} ({named}, {speed} m/s)\n");

@@ -13,11 +13,7 @@ const MOST_SHOTS: usize = 30;
 const ROUNDING: f64 = 1e-12;
 
 /// Tables and fits.
-pub(in crate::program::verbs) fn text(
-    measured: &Measurement,
-    curves: &Curves,
-    reference: &str,
-) -> String {
+pub(crate) fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
     let mut text = counted(measured) + "\n";
     let few = curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS;
     if few && !measured.shots.is_empty() {
@@ -64,13 +60,20 @@ fn counted(measured: &Measurement) -> String {
     )
 }
 
-pub(in crate::program::verbs) fn named(case: &str) -> &str {
+pub(crate) fn named(case: &str) -> &str {
     if case.is_empty() { "all shots" } else { case }
 }
 
-pub(in crate::program::verbs) fn micro(of: Estimate) -> String {
+pub(crate) fn micro(of: Estimate) -> String {
     let (value, error) = with_error(1e6 * of.value, 1e6 * of.sigma);
     format!("{value} ± {error}")
+}
+
+/// A mean time in µs with what all its shots share, which no scatter shows; one shot's own error
+/// holds it.
+pub(crate) fn mean(of: &Summary, shared_s: f64) -> String {
+    let shared_s = if of.count > 1 { shared_s } else { 0.0 };
+    micro(Estimate { value: of.mean, sigma: of.error.hypot(shared_s) })
 }
 
 fn shots(shots: &[Shot]) -> String {
@@ -125,12 +128,8 @@ fn curve(case: &Case) -> String {
         "wall/incident",
         "reflected/incident",
     ];
-    // With what all shots share, which no scatter shows; one shot's own error holds it.
     let mean = |summary: Option<Summary>, shared_s: f64| {
-        summary.map_or(String::new(), |s| {
-            let shared_s = if s.count > 1 { shared_s } else { 0.0 };
-            micro(Estimate { value: s.mean, sigma: s.error.hypot(shared_s) })
-        })
+        summary.map_or(String::new(), |summary| mean(&summary, shared_s))
     };
     let deviation = |summary: Option<Summary>| {
         let known = summary.map(|s| s.deviation).filter(|s| s.is_finite());
@@ -162,11 +161,7 @@ fn curve(case: &Case) -> String {
 
 /// A fit, evaluated; too few speeds for one are plain to see. Errors are widened to
 /// the points' scatter where that is larger.
-pub(in crate::program::verbs) fn law(
-    name: &str,
-    case: &Case,
-    law: &Result<PowerLaw, FitError>,
-) -> String {
+pub(crate) fn law(name: &str, case: &Case, law: &Result<PowerLaw, FitError>) -> String {
     let Ok(law) = law else { return String::new() };
     // Of equal shots, what the arithmetic rounds is no error.
     let alike = law.prefactor_error < ROUNDING * law.prefactor;
