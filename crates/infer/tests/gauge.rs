@@ -1,6 +1,6 @@
 //! The oil gauge on simulated oils.
 
-use crate::common::{Noise, Truth, speeds_between};
+use crate::common::{Noise, Truth, chains, speeds_between};
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::gauge::{Chains, Description, Gauge, GaugeLaws, Pair, known_oils, oils};
 use hertzchain_infer::{Data, Observable};
@@ -10,15 +10,7 @@ const SPEEDS_M_S: [f64; 3] = [0.2, 0.5, 1.2];
 
 fn gauge(wet: Data, seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
-    let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains {
-        dry: &dry_model,
-        wet: &wet_model,
-        free: &free,
-        own: &[],
-        systematic: &[],
-        accuracy: 1e-5,
-    };
+    let chains = chains(&dry_model, &wet_model);
     let dry = Truth::of(&dry_model, &SPEEDS_M_S).measured(seed);
     Gauge::new(&chains, dry, wet).unwrap()
 }
@@ -80,7 +72,6 @@ fn an_unknown_oil_is_none_of_these_until_it_has_a_row() {
 fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
     let paper = preset("paper").unwrap();
     let [dry_model, wet_model] = ["dry", "pump"].map(|name| paper.case(name).unwrap().unwrap());
-    let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
     let push = ["near_end.force".to_owned()];
     let held = wet_model.set(&[("near_end.force", 0.2)]).unwrap();
     let measured = |of: &Experiment, seed| {
@@ -88,14 +79,7 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
         data.only(&[Observable::Incident])
     };
     let said = |own: &[String]| {
-        let chains = Chains {
-            dry: &dry_model,
-            wet: &wet_model,
-            free: &free,
-            own,
-            systematic: &[],
-            accuracy: 1e-5,
-        };
+        let chains = Chains { own, ..chains(&dry_model, &wet_model) };
         let gauge = Gauge::new(&chains, measured(&dry_model, 11), measured(&held, 12)).unwrap();
         let verdict = gauge.verdict(&known_oils().unwrap()).unwrap();
         (verdict.sentence(), gauge.doubts(&verdict))
@@ -112,15 +96,7 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
 #[test]
 fn a_wet_curve_in_the_dry_ones_place_is_told() {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
-    let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains {
-        dry: &dry_model,
-        wet: &wet_model,
-        free: &free,
-        own: &[],
-        systematic: &[],
-        accuracy: 1e-5,
-    };
+    let chains = chains(&dry_model, &wet_model);
     let reported = |[dry, wet]: [&Experiment; 2]| {
         let gauge = Gauge::new(
             &chains,
@@ -140,14 +116,7 @@ fn a_wet_curve_in_the_dry_ones_place_is_told() {
 fn with_loads_of_their_own_the_advice_is_to_leave_returns_out() {
     let paper = preset("paper").unwrap();
     let [dry_model, wet_model] = ["dry", "pump"].map(|name| paper.case(name).unwrap().unwrap());
-    let chains = Chains {
-        dry: &dry_model,
-        wet: &wet_model,
-        free: &["aisi316.eta".to_owned(), "dry.B".to_owned()],
-        own: &["near_end.force".to_owned()],
-        systematic: &[],
-        accuracy: 1e-5,
-    };
+    let chains = Chains { own: &["near_end.force".to_owned()], ..chains(&dry_model, &wet_model) };
     let measured = |of: &Experiment, seed| Truth::of(of, &SPEEDS_M_S).measured(seed);
     let gauge = Gauge::new(&chains, measured(&dry_model, 31), measured(&wet_model, 32)).unwrap();
     let [motor, pump] = [0, 2].map(|at| known_oils().unwrap().remove(at));

@@ -1,8 +1,8 @@
 //! The gauge with a stated form: K and A as power laws of speed.
 
-use crate::common::{Noise, Truth, model, speeds_m_s};
+use crate::common::{Noise, Truth, chains, model, speeds_m_s};
 use hertzchain_experiment::preset;
-use hertzchain_infer::gauge::{Chains, Description, Gauge, Oil, OilLaw, PowerForm, known_oils};
+use hertzchain_infer::gauge::{Description, Gauge, Oil, OilLaw, PowerForm, known_oils};
 use hertzchain_infer::{Data, Observable};
 
 /// K₀ in N/m^{3/2}, k, A₀ in s, a: a liquid whose contacts are power laws.
@@ -21,15 +21,7 @@ fn mine() -> Oil {
 
 fn gauge(wet: Data, speeds: &[f64], seed: u64) -> Gauge {
     let (dry_model, wet_model) = (preset("dry").unwrap(), preset("pump").unwrap());
-    let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
-    let chains = Chains {
-        dry: &dry_model,
-        wet: &wet_model,
-        free: &free,
-        own: &[],
-        systematic: &[],
-        accuracy: 1e-5,
-    };
+    let chains = chains(&dry_model, &wet_model);
     let dry = Truth::of(&dry_model, speeds).measured(seed);
     Gauge::new(&chains, dry, wet).unwrap()
 }

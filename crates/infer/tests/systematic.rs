@@ -1,6 +1,6 @@
 //! Systematic errors as nuisance parameters.
 
-use crate::common::{Truth, model, problem, speeds_m_s};
+use crate::common::{Truth, chains, model, problem, speeds_m_s};
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::gauge::{Chains, Gauge, known_oils};
 use hertzchain_infer::{
@@ -120,11 +120,9 @@ fn a_systematic_error_that_the_data_know_nothing_of_keeps_its_prior() {
 fn the_gauge_names_the_oil_through_a_delay_that_it_is_told_of() {
     let (dry, wet) = (preset("dry").unwrap(), preset("motor").unwrap());
     let measured = |row: &Experiment, delay| later(exact(&Truth::of(row, &speeds_m_s(8))), delay);
-    let free = ["aisi316.eta", "dry.B"].map(str::to_owned);
     // The trigger was moved between both curves.
     let verdict = |systematic: &[(String, f64)], delay| {
-        let chains =
-            Chains { dry: &dry, wet: &wet, free: &free, own: &[], systematic, accuracy: 1e-5 };
+        let chains = Chains { systematic, ..chains(&dry, &wet) };
         let gauge = Gauge::new(&chains, measured(&dry, delay), measured(&wet, delay));
         gauge.unwrap().verdict(&known_oils().unwrap()).unwrap().sentence()
     };

@@ -6,6 +6,7 @@
 )]
 
 use hertzchain_experiment::Experiment;
+use hertzchain_infer::gauge::Chains;
 use hertzchain_infer::{
     CurveProblem, Data, DataRow, FreeNumber, FreeNumbers, Freedom, Model, Observable, Predicted,
     Speeds,
@@ -15,9 +16,18 @@ use hertzchain_sim::{Plan, Solver, shoot};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
+use std::sync::LazyLock;
 
 /// Shots at one speed.
 const SHOTS: f64 = 20.0;
+
+/// Names of the dry contacts' free numbers.
+static FREE: LazyLock<[String; 2]> = LazyLock::new(|| ["aisi316.eta", "dry.B"].map(str::to_owned));
+
+/// A gauge's chains with the paper's free numbers.
+pub(crate) fn chains<'a>(dry: &'a Experiment, wet: &'a Experiment) -> Chains<'a> {
+    Chains { dry, wet, free: &*FREE, own: &[], systematic: &[], accuracy: 1e-5 }
+}
 
 /// Scatter of a shot's speed in m/s, and of its times in s: half a sample of the
 /// paper's 1 MS/s.
