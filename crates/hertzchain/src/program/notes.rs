@@ -2,12 +2,81 @@
 
 use crate::program::failure::Failure;
 use crate::program::print;
+use hertzchain_measure::Watch;
+use hertzchain_paper::reproduce::ReproduceProgress;
 use hertzchain_sim::Stop;
+use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Time between lines.
 const EVERY: Duration = Duration::from_secs(5);
+
+/// Counted work: a bar in a terminal, a line every few seconds elsewhere.
+pub(crate) struct Counter {
+    bar: ProgressBar,
+    /// When the stage began, and when a line was last printed.
+    since: Mutex<(Instant, Instant)>,
+}
+
+impl Counter {
+    /// Counts so many of what is named; 0 if their number is not known.
+    pub(crate) fn new(what: &str, length: u64) -> Self {
+        let bar = ProgressBar::no_length();
+        let style = ProgressStyle::with_template("{msg:32} {wide_bar} {pos}/{len} {eta} left");
+        style.into_iter().for_each(|style| bar.set_style(style));
+        let counter = Self { bar, since: Mutex::new((Instant::now(), Instant::now())) };
+        counter.begin(what, length);
+        counter
+    }
+
+    /// Removes the bar.
+    pub(crate) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn line(&self, elapsed: Duration) -> String {
+        let (what, done) = (self.bar.message(), self.bar.position());
+        let rate_hz = done as f64 / elapsed.as_secs_f64();
+        match self.bar.length() {
+            Some(length) if length >= done => format!(
+                "{what}: {done} of {length}, {rate_hz:.1} a second, {:.0} s left",
+                (length - done) as f64 / rate_hz
+            ),
+            _ => format!("{what}: {done}, {rate_hz:.1} a second"),
+        }
+    }
+}
+
+impl ReproduceProgress for Counter {
+    fn begin(&self, what: &str, length: u64) {
+        self.bar.reset();
+        self.bar.set_length(length);
+        self.bar.set_message(what.to_owned());
+        *self.since.lock().unwrap_or_else(PoisonError::into_inner) =
+            (Instant::now(), Instant::now());
+    }
+
+    fn advance(&self) {
+        self.bar.inc(1);
+        let mut since = self.since.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.bar.is_hidden() && since.1.elapsed() > EVERY {
+            since.1 = Instant::now();
+            print::note(&self.line(since.0.elapsed()));
+        }
+    }
+
+    fn note(&self, text: &str) {
+        self.bar.suspend(|| print::note(text));
+    }
+}
+
+impl Watch for Counter {
+    fn seen(&self) {
+        self.advance();
+    }
+}
 
 /// Runs work with so many threads, and prints what it notes of its progress, whether or not
 /// standard error is a terminal.

@@ -4,10 +4,11 @@ use crate::campaign::PreparedCampaign;
 use crate::input;
 use crate::options::CampaignOptions as Arguments;
 use crate::program::failure::Failure;
+use crate::program::notes::Counter;
 use crate::program::print::{self, print};
+use hertzchain_paper::reproduce::ReproduceProgress;
 use hertzchain_sim::rig::{Done, Plan, Progress};
-use indicatif::{HumanBytes, ProgressBar, ProgressStyle};
-use std::io::IsTerminal;
+use indicatif::HumanBytes;
 use std::time::{Duration, Instant};
 
 /// Runs the verb.
@@ -21,10 +22,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &prepared.warnings {
         print::note(&format!("warning: {warning}"));
     }
-    let shown = CampaignProgress::new();
+    let counter = Counter::new("shots", 0);
     let begun = Instant::now();
-    let done = prepared.run(&|progress| shown.show(progress));
-    shown.bar.finish_and_clear();
+    let done = prepared.run(&|Progress { fired, shots }| match fired {
+        0 => counter.begin("shots", shots),
+        _ => counter.advance(),
+    });
+    counter.finish();
     let done = done?;
     print(&summary(&prepared.plan, &done, begun.elapsed(), arguments))?;
     evaluate(&done)
@@ -69,41 +73,6 @@ fn untriggered(done: &Done) -> Option<String> {
             names.join(", ")
         )
     })
-}
-
-/// Progress: a bar in a terminal, a line for every tenth elsewhere.
-struct CampaignProgress {
-    bar: ProgressBar,
-    begun: Instant,
-    drawn: bool,
-}
-
-impl CampaignProgress {
-    fn new() -> Self {
-        let bar = ProgressBar::new(0);
-        let template = "{wide_bar} {pos}/{len} shots, {per_sec:.1}, {eta} left";
-        let style = ProgressStyle::with_template(template);
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self { bar, begun: Instant::now(), drawn: std::io::stderr().is_terminal() }
-    }
-
-    fn show(&self, progress: Progress) {
-        let Progress { fired, shots } = progress;
-        if fired == 0 {
-            self.bar.set_length(shots);
-            return;
-        }
-        self.bar.inc(1);
-        let tenth = |fired: u64| 10 * fired / shots.max(1);
-        if !self.drawn && tenth(fired) > tenth(fired - 1) {
-            let elapsed_s = self.begun.elapsed().as_secs_f64();
-            let rate_hz = fired as f64 / elapsed_s;
-            let left_s = (shots - fired) as f64 / rate_hz;
-            print::note(&format!(
-                "{fired} of {shots} shots, {rate_hz:.1} a second, {left_s:.0} s left"
-            ));
-        }
-    }
 }
 
 /// What was done, and how fast.

@@ -8,12 +8,12 @@ use crate::measure;
 use crate::options::MeasureOptions as Arguments;
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
+use crate::program::notes::Counter;
 use crate::program::print;
 use hertzchain_measure::signal::Bandwidth;
 use hertzchain_measure::{
-    Curves, Measurement, Note, Options, Watch, laws_csv, ratios_csv, speeds_csv, write_shots,
+    Curves, Measurement, Note, Options, laws_csv, ratios_csv, speeds_csv, write_shots,
 };
-use indicatif::{ProgressBar, ProgressStyle};
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -21,10 +21,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let most_flagged = if arguments.report.is_some() { report::MOST } else { 0 };
     let options = Options { most_flagged, ..measure::options(arguments)? };
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let bar = bar();
-    let mut measured = hertzchain_measure::measure(&files, &options, &bar);
+    let counter = Counter::new("records", 0);
+    let mut measured = hertzchain_measure::measure(&files, &options, &counter);
     measured.notes.splice(0..0, notes);
-    bar.0.finish_and_clear();
+    counter.finish();
     measure::suits(&measured)?;
     let grouping = measure::grouping(arguments);
     let curves = Curves::of(&measured.shots, &grouping);
@@ -41,22 +41,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         write(folder, &measured, (&curves, &grouping.reference))?;
     }
     measure::evaluate(&measured)
-}
-
-/// Drawn on a terminal only.
-struct FileBar(ProgressBar);
-
-impl Watch for FileBar {
-    fn seen(&self) {
-        self.0.inc(1);
-    }
-}
-
-fn bar() -> FileBar {
-    let bar = ProgressBar::no_length();
-    let style = ProgressStyle::with_template("{spinner} {pos} records, {per_sec}");
-    style.into_iter().for_each(|style| bar.set_style(style));
-    FileBar(bar)
 }
 
 /// Most lines about the table of shots, which may be of other recordings.

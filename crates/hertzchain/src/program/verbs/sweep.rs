@@ -8,39 +8,32 @@ use crate::options::SweepOptions as Arguments;
 use crate::program::failure::{self, Failure};
 use crate::program::folder::Folder;
 use crate::program::format::Style;
+use crate::program::notes::Counter;
 use crate::program::print;
 use crate::sweep::{self, SweepResult};
 use crate::{input, missing, table};
 use hertzchain_experiment::{Experiment, Units};
+use hertzchain_paper::reproduce::ReproduceProgress;
 use hertzchain_sim::StudyError;
-use indicatif::{ProgressBar, ProgressStyle};
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speeds = sweep::speeds(&experiment, arguments)?;
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let bar = bar(speeds.len() as u64);
+    let counter = Counter::new("shots", speeds.len() as u64);
     let batch = sweep::batch(&experiment, speeds, arguments)?;
     if let Some(shard) = arguments.shard {
         let pool = sweep::pool(arguments)?;
-        let done = pool.install(|| shard::run(arguments, &batch, shard, &|| bar.inc(1)));
-        bar.finish_and_clear();
+        let done = pool.install(|| shard::run(arguments, &batch, shard, &|| counter.advance()));
+        counter.finish();
         return done;
     }
-    let swept = sweep::computed(&experiment, arguments, &batch, &|| bar.inc(1))?;
-    bar.finish_and_clear();
+    let swept = sweep::computed(&experiment, arguments, &batch, &|| counter.advance())?;
+    counter.finish();
     show(arguments, &experiment, &swept)?;
     folder.map_or(Ok(()), |folder| reported::write(folder, &swept.result))?;
     report_failed(&swept, experiment.units())
-}
-
-/// Drawn on a terminal only.
-fn bar(shots: u64) -> ProgressBar {
-    let bar = ProgressBar::new(shots);
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} shots, {eta} left");
-    style.into_iter().for_each(|style| bar.set_style(style));
-    bar
 }
 
 /// Every speed failed: the sweep did.

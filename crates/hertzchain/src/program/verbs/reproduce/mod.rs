@@ -5,16 +5,15 @@ mod rig;
 use crate::program::arguments::Reproduce;
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
-use crate::program::print::{self, print};
+use crate::program::notes::Counter;
+use crate::program::print::print;
 use comfy_table::{ContentArrangement, Table, presets};
 use hertzchain_paper::claims::{ClaimVerdict, EvaluatedClaim, MEANING, computed_text};
 use hertzchain_paper::figures::{captions, figures};
 use hertzchain_paper::readings::ReadingScan;
 use hertzchain_paper::reproduce::{
-    PROVENANCE, ReproduceError, ReproduceOptions, ReproduceProgress, Reproduction,
-    remove_stale_files, reproduce,
+    PROVENANCE, ReproduceError, ReproduceOptions, Reproduction, remove_stale_files, reproduce,
 };
-use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Write as _;
 use std::path::Path;
 use terminal_size::terminal_size_of;
@@ -27,15 +26,15 @@ pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
         true => ReproduceOptions::default().with_readings(),
         false => ReproduceOptions::default(),
     };
-    let bar = Bar::new();
-    let computed = reproduce(&options, &bar);
+    let counter = Counter::new("", 0);
+    let computed = reproduce(&options, &counter);
     let computed = computed.map_err(|error| failure(&error))?;
     write(&computed, &mut folder)?;
     let mut text = summary(&computed, folder.path());
     if arguments.rig {
-        text.push_str(&rig::run(&mut folder, &bar)?);
+        text.push_str(&rig::run(&mut folder, &counter)?);
     }
-    bar.0.finish_and_clear();
+    counter.finish();
     let names: Vec<&str> = folder.names().into_iter().chain([PROVENANCE]).collect();
     let provenance = computed.provenance_json(&names);
     remove_stale_files(folder.path(), &names).map_err(|error| failure(&error))?;
@@ -60,34 +59,6 @@ fn write(computed: &Reproduction, folder: &mut Folder) -> Result<(), Failure> {
 /// The paper's chains come with the program: nothing here is the user's fault.
 fn failure(error: &ReproduceError) -> Failure {
     Failure::Ours(error.to_string())
-}
-
-/// A bar in the terminal; nothing where no user looks.
-struct Bar(ProgressBar);
-
-impl Bar {
-    fn new() -> Self {
-        let bar = ProgressBar::new(0);
-        let style = ProgressStyle::with_template("{msg:32} {wide_bar} {pos}/{len} {elapsed}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self(bar)
-    }
-}
-
-impl ReproduceProgress for Bar {
-    fn begin(&self, stage: &str, steps: u64) {
-        self.0.reset();
-        self.0.set_length(steps);
-        self.0.set_message(stage.to_owned());
-    }
-
-    fn advance(&self) {
-        self.0.inc(1);
-    }
-
-    fn note(&self, text: &str) {
-        self.0.suspend(|| print::note(text));
-    }
 }
 
 /// What was found, and where it lies.

@@ -1,18 +1,19 @@
 //! `hertzchain reproduce --rig`: what the paper says of its rig.
 
-use super::{Bar, verdicts};
+use super::verdicts;
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
+use crate::program::notes::Counter;
 use hertzchain_experiment::preset;
 use hertzchain_paper::figures::rig_figures;
 use hertzchain_paper::rig_claims::{MEANING, RigClaims, RigDesign, observe, series_csv};
 
 /// Runs the campaigns and writes verdicts, table and pictures; returns what was found, for people.
-pub(super) fn run(into: &mut Folder, bar: &Bar) -> Result<String, Failure> {
+pub(super) fn run(into: &mut Folder, counter: &Counter) -> Result<String, Failure> {
     let ours = |error: &dyn std::error::Error| Failure::Ours(error.to_string());
     let paper = preset("paper").map_err(|error| ours(&error))?;
     let design = RigDesign::about(paper);
-    let evidence = observe(&design, bar).map_err(|error| ours(&error))?;
+    let evidence = observe(&design, counter).map_err(|error| ours(&error))?;
     let claims = RigClaims::evaluate(&design, &evidence).map_err(|error| ours(&error))?;
     let json = format!("{:#}\n", claims.json());
     into.write("rig-claims.json", json.as_bytes())?;
