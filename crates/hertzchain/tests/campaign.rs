@@ -130,29 +130,6 @@ fn parts_on_other_threads_make_the_same_files_as_the_whole() {
     assert!(scratch.files("whole") == scratch.files("dealt"));
 }
 
-#[test]
-fn progress_without_a_terminal_tells_rate_and_time_left_every_tenth() {
-    let scratch = Scratch::new("progress");
-    let output = scratch.run("out", &["--threads", "1"]);
-    let text = String::from_utf8(output.stderr).unwrap();
-    let mut last = 0.0;
-    for line in text.lines() {
-        let words: Vec<&str> = line.split(' ').collect();
-        let [fired, "of", "32", "shots,", rate, "a", "second,", left, "s", "left"] = words[..]
-        else {
-            panic!("{line}");
-        };
-        let [fired, rate, left] = [fired, rate, left].map(|word| word.parse::<f64>().unwrap());
-        assert!(fired > last && rate > 0.1, "{line}");
-        // The rate was rounded to 0.05 a second, the time left to half a second.
-        let expected = (32.0 - fired) / rate;
-        let rounding = 0.5 + expected * 0.05 / (rate - 0.05);
-        assert!((left - expected).abs() <= rounding, "{line}");
-        last = fired;
-    }
-    assert_eq!((text.lines().count(), last), (10, 32.0), "{text}");
-}
-
 /// The shell lets no file grow beyond 16 blocks of 512 or 1024 bytes. Without
 /// the trap the system would kill the program that tries; with it the write fails,
 /// as on a full disk.

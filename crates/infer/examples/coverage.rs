@@ -3,7 +3,8 @@
 //! ```sh
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50        # data sets, of them by posterior
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet    # one case by its name
-//! cargo run --release -p hertzchain-infer --example coverage -- 500 50 delay  # and so: delay, unaware, joint, joint-delay
+//! cargo run --release -p hertzchain-infer --example coverage -- 500 50 delay  # and so: unaware, speed_scale, radius_error,
+//!                                                                             # joint, joint-delay
 //! cargo run --release -p hertzchain-infer --example coverage -- 500 50 wet 501    # other data sets: seeds from 501
 //! ```
 //!
@@ -12,7 +13,8 @@
 //! 20 shots a speed, speeds ±0.003 m/s; that of `bent` at so much more noise that the
 //! three kinds of intervals differ; those of `scatter` and `widened` have standard errors
 //! from the scatter of their own twenty shots, as they are or widened; in those of `delay` incident times
-//! are late by a normal number of 0.2 µs, new in each set, which is a nuisance parameter or (`unaware`) not;
+//! are late by a normal number of 0.2 µs, new in each set, which is a nuisance parameter or (`unaware`) not; in those of
+//! `speed_scale` and `radius_error` all speeds or radii are other than stated, by 1 % and 1 µm;
 //! those of `joint` have a second table, of a sensor in bead 20. Fits use a surrogate of the model, whose error
 //! is printed in standard errors.
 
@@ -45,8 +47,10 @@ struct Case {
     /// Whether Runge–Kutta makes the curve.
     by_rk4: bool,
     measured: Measured,
-    /// Whether incident times are late, and whether that is a nuisance parameter.
-    is_late: [bool; 2],
+    /// The systematic error and its standard deviation.
+    systematic: Option<(&'static str, f64)>,
+    /// Whether the fit has it as a nuisance parameter.
+    is_aware: bool,
     /// Whether there is a second table, of a sensor in another bead.
     is_joint: bool,
 }
@@ -94,17 +98,20 @@ const DRY: Case = Case {
     set: [("aisi316.shear_viscosity", 3.2e4), ("aisi316.bulk_viscosity", 3.2e4)],
     by_rk4: false,
     measured: Measured::Well,
-    is_late: [false, false],
+    systematic: None,
+    is_aware: true,
     is_joint: false,
 };
 
-/// Standard deviation of the delay of incident times in s.
-const DELAY_S: f64 = 0.2e-6;
+/// Systematic errors with their standard deviations in SI.
+const DELAY: (&str, f64) = ("delay", 0.2e-6);
+const SPEED_SCALE: (&str, f64) = ("speed_scale", 0.01);
+const RADIUS_ERROR: (&str, f64) = ("radius_error", 1e-6);
 
 /// The sensor's bead in the second table.
 const OTHER_BEAD: f64 = 20.0;
 
-const CASES: [Case; 11] = [
+const CASES: [Case; 13] = [
     DRY,
     Case { name: "rk4", by_rk4: true, ..DRY },
     Case {
@@ -129,10 +136,12 @@ const CASES: [Case; 11] = [
         ],
         ..DRY
     },
-    Case { name: "delay", is_late: [true, true], ..DRY },
-    Case { name: "unaware", is_late: [true, false], ..DRY },
+    Case { name: "delay", systematic: Some(DELAY), ..DRY },
+    Case { name: "unaware", systematic: Some(DELAY), is_aware: false, ..DRY },
+    Case { name: "speed_scale", systematic: Some(SPEED_SCALE), ..DRY },
+    Case { name: "radius_error", systematic: Some(RADIUS_ERROR), ..DRY },
     Case { name: "joint", is_joint: true, ..DRY },
-    Case { name: "joint-delay", is_joint: true, is_late: [true, true], ..DRY },
+    Case { name: "joint-delay", is_joint: true, systematic: Some(DELAY), ..DRY },
     Case { name: "bent", measured: Measured::Poorly, ..DRY },
     Case { name: "scatter", measured: Measured::ByShots(false), ..DRY },
     Case { name: "widened", measured: Measured::ByShots(true), ..DRY },
@@ -170,7 +179,9 @@ fn study(case: &Case, seeds: Range<usize>, sampled: usize) -> Result<(), Box<dyn
         rows.push(near.set(&[("sensors.bead", OTHER_BEAD)])?);
     }
     let truths = rows.iter().map(|row| truth(case, row)).collect::<Result<Vec<_>, _>>()?;
-    let data = |seed: usize| repetition(case, &truths, seed as u64);
+    let moved = rows.iter().map(|row| logarithmic_slopes(case, row));
+    let slopes = moved.collect::<Result<Vec<_>, _>>()?;
+    let data = |seed: usize| repetition(case, &truths, &slopes, seed as u64);
     let models = rows.iter().map(|row| uncertain(case, row)).collect::<Result<Vec<_>, _>>()?;
     let first = CurveProblem::of_curves(models.into_iter().zip(data(0)).collect(), &[]);
     let best = fit(&first, &Fitting::default())?;
@@ -244,25 +255,62 @@ fn truth(case: &Case, row: &Experiment) -> Result<Truth, Box<dyn Error>> {
 /// The model of a row.
 fn uncertain(case: &Case, row: &Experiment) -> Result<Model, Box<dyn Error>> {
     let free = case.free.iter().map(|name| FreeNumber::find(row, name, None));
-    let known = case.is_late[1].then(|| FreeNumber::systematic(row, "delay", DELAY_S));
+    let known = case.systematic.filter(|_| case.is_aware);
+    let known = known.map(|(name, sd)| FreeNumber::systematic(row, name, sd));
     let numbers = FreeNumbers::new(free.chain(known).collect::<Result<_, _>>()?)?;
     Ok(Model::new(row, numbers)?)
 }
 
-/// A simulated repetition of each table.
-fn repetition(case: &Case, truths: &[Truth], seed: u64) -> Vec<Data> {
-    let normal: f64 = StandardNormal.sample(&mut ChaCha8Rng::seed_from_u64(seed + LATE));
-    let late = if case.is_late[0] { normal * DELAY_S } else { 0.0 };
-    let table = |(at, truth): (u64, &Truth)| {
-        let mut data = case.measured.data(truth, seed + at * OTHER_TABLE);
-        let incident = data.rows.iter_mut().filter_map(|row| row.values[0].as_mut());
-        incident.for_each(|incident| incident.value += late);
-        data
+/// What a standard deviation of the systematic error changes the logarithms of both times by, a row of
+/// the table each: from curves of other speeds or other radii, not from the model's own parameter.
+fn logarithmic_slopes(case: &Case, row: &Experiment) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
+    let speeds_m_s = case.measured.speeds_m_s();
+    let curve = |sds: f64| -> Result<Vec<Predicted>, Box<dyn Error>> {
+        let (mut row, mut speeds_m_s) = (row.set(&case.set)?, speeds_m_s.clone());
+        match case.systematic {
+            Some(SPEED_SCALE) => {
+                speeds_m_s.iter_mut().for_each(|v| *v *= 1.0 + sds * SPEED_SCALE.1)
+            }
+            Some(RADIUS_ERROR) => {
+                let radii =
+                    row.places().into_iter().filter(|place| place.path.ends_with(".radius"));
+                let moved = radii.filter_map(|p| Some((p.path, p.value? + sds * RADIUS_ERROR.1)));
+                let moved: Vec<(String, f64)> = moved.collect();
+                let moved: Vec<(&str, f64)> = moved.iter().map(|(path, m)| (&**path, *m)).collect();
+                row = row.set(&moved)?;
+            }
+            _ => {}
+        }
+        Ok(Truth::of(&row, &speeds_m_s).curve)
     };
-    (0..).zip(truths).map(table).collect()
+    let (below, above) = (curve(-1.0)?, curve(1.0)?);
+    let of = |(below, above): (&Predicted, &Predicted)| {
+        [0, 1].map(|at| match (below[at], above[at]) {
+            (Some(below), Some(above)) => 0.5 * (above / below).ln(),
+            _ => 0.0,
+        })
+    };
+    Ok(below.iter().zip(&above).map(of).collect())
 }
 
-/// What seeds of delays and of second tables are apart from those of the first.
+/// A simulated repetition of each table.
+fn repetition(case: &Case, truths: &[Truth], slopes: &[Vec<[f64; 2]>], seed: u64) -> Vec<Data> {
+    let normal: f64 = StandardNormal.sample(&mut ChaCha8Rng::seed_from_u64(seed + LATE));
+    let late_s = case.systematic.filter(|it| *it == DELAY).map_or(0.0, |(_, sd)| sd * normal);
+    let table = |(at, (truth, slopes)): (u64, (&Truth, &Vec<[f64; 2]>))| {
+        let mut data = case.measured.data(truth, seed + at * OTHER_TABLE);
+        for (row, slopes) in data.rows.iter_mut().zip(slopes) {
+            for (time, slope) in row.values.iter_mut().zip(slopes) {
+                time.iter_mut().for_each(|time| time.value *= (slope * normal).exp());
+            }
+            row.values[0].iter_mut().for_each(|incident| incident.value += late_s);
+        }
+        data
+    };
+    (0..).zip(truths.iter().zip(slopes)).map(table).collect()
+}
+
+/// What seeds of systematic errors and of second tables are apart from those of the first.
 const LATE: u64 = 1_000_000;
 const OTHER_TABLE: u64 = 2_000_000;
 
