@@ -205,6 +205,41 @@ fn told_of_two_columns(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
+fn calibrated_sensors_state_forces_and_the_wall_channels_delay_is_taken_out() {
+    let folder = folder("calibrated");
+    // The wall's pulse is half-way between the others.
+    let wall_us = 500.0 + incident_us(0.5);
+    let rows = volts(0.5, 1.0).into_iter().enumerate().map(|(i, volt)| {
+        let is_wall = (i as f64 - wall_us).abs() < 0.5 * incident_us(0.5);
+        let ripple = 1e-3 * (2.9 * i as f64).sin();
+        let [sensor, wall] = if is_wall { [ripple, volt] } else { [volt, ripple] };
+        format!("{i},{sensor:.6},{wall:.6}\n")
+    });
+    let text = "t (us),sensor,wall\n".to_owned() + &rows.collect::<String>();
+    fs::write(folder.join("pair.csv"), text).unwrap();
+    let shot = |arguments: &[&str]| {
+        let both = ["pair.csv", "--channel", "sensor", "--channel", "wall", "--json"];
+        json(&measure(&folder, &[&both, arguments].concat()))["shots"][0].clone()
+    };
+    let plain = shot(&[]);
+    let options = ["--skew", "-3us", "--sensitivity", "20mV/N", "--wall-sensitivity", "0.04"];
+    let found = shot(&options);
+    let of = |shot: &Value, name: &str| shot[name]["value"].as_f64().unwrap();
+    let moved = of(&found, "tof_incident_s") - of(&plain, "tof_incident_s");
+    // Rounding.
+    assert!((moved - 3e-6).abs() < 1e-12, "{moved:e}");
+    let share = of(&found, "wall_over_incident") / of(&plain, "wall_over_incident");
+    assert!((share - 0.5).abs() < 1e-12, "{share}");
+    let height_n = found["incident"]["height_n"].as_f64().unwrap();
+    let expected_n = plain["incident"]["height_v"].as_f64().unwrap() / 0.02;
+    assert!((height_n / expected_n - 1.0).abs() < 1e-12, "{height_n} {expected_n}");
+    assert!(plain["wall"]["height_n"].is_null());
+    let summed = measure(&folder, &["pair.csv", "--channel", "sensor", "--skew", "1us"]);
+    let reported = String::from_utf8_lossy(&summed.stderr).into_owned();
+    assert!(reported.contains("name the two channels"), "{reported}");
+}
+
+#[test]
 fn a_time_without_a_unit_is_told_and_a_unit_can_be_given() {
     let folder = folder("unit");
     let reported = told_of_two_columns(&folder, &[]);

@@ -6,7 +6,7 @@ use crate::records::Record;
 use crate::run::{stated_bandwidth, stated_high_pass_hz};
 use crate::signal::{
     Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, Picked, Picks, PulseKind,
-    QualityFlag, SignalOptions,
+    QualityFlag, SensorCalibration, SignalOptions,
 };
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -110,12 +110,20 @@ impl Shot {
             self.case = case;
         }
         if let Some(entry) = entry.filter(|entry| entry.picks_s.iter().any(Option::is_some)) {
-            self.pick_by_hand(entry.picks_s, entry.pick_error_s.unwrap_or(self.interval_s));
+            let sigma_s = entry.pick_error_s.unwrap_or(self.interval_s);
+            self.pick_by_hand(entry.picks_s, sigma_s, options.measuring.calibration);
         }
     }
 
     /// Takes over times that the user picked, and drops what was doubtful about these pulses.
-    fn pick_by_hand(&mut self, times_s: [Option<f64>; 3], sigma_s: f64) {
+    fn pick_by_hand(
+        &mut self,
+        mut times_s: [Option<f64>; 3],
+        sigma_s: f64,
+        calibration: SensorCalibration,
+    ) {
+        let wall_s = &mut times_s[PulseKind::Wall as usize];
+        wall_s.iter_mut().for_each(|time_s| *time_s -= calibration.skew_s);
         let found = self.flight.as_ref().ok();
         let interval_error = found.map_or(0.0, |flight| flight.interval_error);
         let unknown = Picks {
@@ -123,6 +131,7 @@ impl Shot {
             wall: Picked::UNKNOWN,
             reflected: None,
             competing: [None; 3],
+            calibration,
         };
         let mut picks = found.map_or(unknown, |flight| flight.picks);
         for (kind, time_s) in PulseKind::ALL.into_iter().zip(times_s) {

@@ -84,6 +84,8 @@ fn shot_line(shot: Option<&Shot>, keep_dubious: bool) -> Line {
     }
     let height = |(name, kind)| number(&format!("{name}_peak_v"), picked(kind).map(|p| p.height));
     line.extend(PULSES.map(height));
+    let force_n = |kind| flight.and_then(|flight| flight.picks.force_n(kind));
+    line.extend(PULSES.map(|(name, kind)| number(&format!("{name}_peak_n"), force_n(kind))));
     let width = |(name, kind)| number(&format!("{name}_width_s"), picked(kind).map(|p| p.width_s));
     line.extend(PULSES.map(width));
     for (name, kind) in PULSES {

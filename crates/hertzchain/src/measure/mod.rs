@@ -20,7 +20,7 @@ use hertzchain_infer::Data;
 use hertzchain_measure::MeasureError;
 use hertzchain_measure::records::{Parts, ReadOptions, Rows, is_recording, seekable, text};
 use hertzchain_measure::signal::{
-    Bandwidth, FindOptions, LowPass, Method, Polarity, Shape, SignalOptions,
+    Bandwidth, FindOptions, LowPass, Method, Polarity, SensorCalibration, Shape, SignalOptions,
 };
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Note, Options, Shot, ShotList, speeds_csv,
@@ -259,6 +259,12 @@ fn measuring(
         high_pass_s: high_pass_hz.filter(|hz| *hz > 0.0).map(|hz| (TAU * hz).recip()),
         low_pass: picking.smooth.map(|cutoff| LowPass { cutoff_hz: cutoff.0, order: ORDER }),
         bandwidth: bandwidth(picking, rig)?,
+        calibration: SensorCalibration {
+            sensitivities_v_n: picking
+                .sensitivity
+                .map(|sensor| [sensor.0, picking.wall_sensitivity.map_or(sensor.0, |wall| wall.0)]),
+            skew_s: picking.skew.map_or(0.0, |skew| skew.0),
+        },
     })
 }
 

@@ -1,6 +1,6 @@
 //! Everything measured, as JSON in SI.
 
-use hertzchain_measure::signal::{Estimate, FitError, Picked, PowerLaw, Ratio, Summary};
+use hertzchain_measure::signal::{Estimate, FitError, Picked, PowerLaw, PulseKind, Ratio, Summary};
 use hertzchain_measure::{
     Case, Curves, Measurement, Note, Shot, SpeedRow, UnmeasuredSpeed, WetOverDry,
 };
@@ -102,9 +102,16 @@ pub(crate) fn shot(shot: &Shot) -> Value {
             all["wall_over_incident"] = estimate(flight.wall_over_incident);
             all["reflected_over_incident"] =
                 flight.reflected_over_incident.map_or(Value::Null, estimate);
-            all["incident"] = picked(&flight.picks.incident);
-            all["wall"] = picked(&flight.picks.wall);
-            all["reflected"] = flight.picks.reflected.as_ref().map_or(Value::Null, picked);
+            let picks = &flight.picks;
+            let pulse = |of: &Picked, kind| {
+                let mut all = picked(of);
+                all["height_n"] = json!(picks.force_n(kind));
+                all
+            };
+            all["incident"] = pulse(&picks.incident, PulseKind::Incident);
+            all["wall"] = pulse(&picks.wall, PulseKind::Wall);
+            let back = picks.reflected.as_ref();
+            all["reflected"] = back.map_or(Value::Null, |back| pulse(back, PulseKind::Reflected));
         }
     }
     all

@@ -1,7 +1,9 @@
 //! Options of `measure`.
 
 use super::values::texts;
-use super::{Corner, Count, Filter, Frequency, Share, Speed, Time, TimeUnit, Voltage};
+use super::{
+    Corner, Count, Delay, Filter, Frequency, Sensitivity, Share, Speed, Time, TimeUnit, Voltage,
+};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -159,6 +161,15 @@ pub struct PickOptions {
     /// Corner of the AC coupling (high-pass) that the signal went through, such as 0.5Hz: its droop is corrected; 0 leaves it, also where a recording states a corner
     #[arg(long, value_name = "RATE")]
     pub ac_coupling: Option<Corner>,
+    /// Sensitivity of the sensor bead's sensor, such as 12mV/N: heights are also stated in N
+    #[arg(long, value_name = "V/N")]
+    pub sensitivity: Option<Sensitivity>,
+    /// The same of the wall's sensor, if it is another: ratios of peaks are those of forces
+    #[arg(long, value_name = "V/N", requires = "sensitivity")]
+    pub wall_sensitivity: Option<Sensitivity>,
+    /// By how much the wall's channel is late, such as 1.5us; with two channels
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub skew: Option<Delay>,
 }
 
 /// Picking methods by name.

@@ -22,8 +22,9 @@ pub use self::{
         Solver, SweepOptions,
     },
     values::{
-        Accuracy, Against, Also, Assignment, Corner, Cost, Count, ErrorShots, Few, Frequency,
-        Positive, Preload, Share, Speed, Threads, Time, TimeUnit, Voltage, WayKind,
+        Accuracy, Against, Also, Assignment, Corner, Cost, Count, Delay, ErrorShots, Few,
+        Frequency, Positive, Preload, Sensitivity, Share, Speed, Threads, Time, TimeUnit, Voltage,
+        WayKind,
     },
 };
 pub(crate) use given::has_unit;

@@ -126,6 +126,11 @@ numbers! {
     /// A positive time in s.
     Time(f64): "a positive time, such as 0.5us, or 5e-7 for s",
         |text| number(text, "s").filter(|time| *time > 0.0);
+    /// A time in s that may be negative.
+    Delay(f64): "a time, such as 0.5us or -0.5us, or 5e-7 for s", |text| number(text, "s");
+    /// A sensitivity in V/N.
+    Sensitivity(f64): "a positive sensitivity, such as 12mV/N, or 0.012 for V/N",
+        |text| number(text, "V/N").filter(|sensitivity| *sensitivity > 0.0);
     /// A positive frequency or sampling rate in Hz.
     Frequency(f64): "a rate such as 1MHz, 500kS/s or 1e6", |text| hertz(text).filter(|rate| *rate > 0.0);
     /// A frequency in Hz, or 0 for none.

@@ -116,14 +116,14 @@ mod tests {
     use hertzchain_paper::reproduce::ReproduceProgress;
 
     #[test]
-    fn a_line_tells_rate_and_time_left() {
+    fn a_line_has_rate_and_time_left() {
         let counter = Counter::new("shots", 32);
         (0..8).for_each(|_| counter.advance());
         assert_eq!(counter.line(2 * EVERY), "shots: 8 of 32, 0.8 a second, 30 s left");
     }
 
     #[test]
-    fn work_of_unknown_length_tells_no_time_left() {
+    fn work_of_unknown_length_has_no_time_left() {
         let counter = Counter::new("records", 0);
         (0..8).for_each(|_| counter.advance());
         assert_eq!(counter.line(2 * EVERY), "records: 8, 0.8 a second");

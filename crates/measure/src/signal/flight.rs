@@ -25,6 +25,35 @@ pub struct SignalOptions {
     pub low_pass: Option<LowPass>,
     /// The amplifier's low-pass, if its effects on maxima are to be corrected.
     pub bandwidth: Option<Bandwidth>,
+    /// What is known of the sensors.
+    pub calibration: SensorCalibration,
+}
+
+/// SensorCalibration of the sensor bead's and the wall's sensor. Errors of it are those of a fit's systematic
+/// parameters, not of a shot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensorCalibration {
+    /// Sensitivities of both in V/N, if heights are to be forces.
+    pub sensitivities_v_n: Option<[f64; 2]>,
+    /// By how much the wall's channel is late, in s; 0 of a summed channel.
+    pub skew_s: f64,
+}
+
+impl SensorCalibration {
+    /// The sensitivity in V/N of the sensor that sees a pulse.
+    pub(crate) fn sensitivity_v_n(&self, kind: PulseKind) -> Option<f64> {
+        self.sensitivities_v_n.map(|both| both[usize::from(kind == PulseKind::Wall)])
+    }
+
+    fn check(&self, channels: Channels<'_>) -> Result<()> {
+        let sensitivities = self.sensitivities_v_n.into_iter().flatten();
+        for sensitivity in sensitivities {
+            MeasureError::positive("sensitivity in V/N", sensitivity)?;
+        }
+        let accepted = self.skew_s == 0.0 || (self.skew_s.is_finite() && !channels.is_summed());
+        let expected = "0 where one channel sums both sensors; name the two channels";
+        MeasureError::require(accepted, "skew in s", self.skew_s, expected)
+    }
 }
 
 /// A measured shot.
@@ -47,6 +76,7 @@ pub fn measure(
     options: &SignalOptions,
 ) -> Result<Measured> {
     MeasureError::positive("sampling interval in s", interval_s)?;
+    options.calibration.check(channels)?;
     let find = &options.find;
     let polarities = [find.polarity, find.wall_polarity];
     let raw = channels.both();
@@ -84,7 +114,8 @@ pub fn measure(
     let ranges = if changed { [None; 2] } else { find.ranges(channels) };
     let corrections = (ranges, options.bandwidth);
     let picks = pick(channels, interval_s, &found, &options.method, corrections);
-    let flight = picks.map(|picks| with_drift(picks, &drifts, interval_s).flight());
+    let calibrated = |picks| with_drift(picks, &drifts, interval_s).calibrated(options.calibration);
+    let flight = picks.map(|picks| calibrated(picks).flight());
     let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     let not_picked = none_reflected && found.reflected.is_some();
     found.flag(not_picked.then_some(QualityFlag::NotPicked(PulseKind::Reflected)));
@@ -156,7 +187,7 @@ pub struct Flight {
     /// Covariance of both in s²: minus the variance of the wall's time, which
     /// ends one and begins the other. 0 without a reflected pulse.
     pub covariance_s2: f64,
-    /// Height of the wall's pulse over that of the incident one.
+    /// Height of the wall's pulse over that of the incident one; of forces, if sensors are calibrated.
     pub wall_over_incident: Estimate,
     /// Height of the reflected pulse over that of the incident one.
     pub reflected_over_incident: Option<Estimate>,
@@ -260,9 +291,28 @@ impl Picks {
         }
     }
 
+    /// Times of the wall's channel moved to the sensor bead's clock, and ratios of heights those of forces.
+    pub(crate) fn calibrated(mut self, calibration: SensorCalibration) -> Self {
+        self.calibration = calibration;
+        self.wall.time_s -= calibration.skew_s;
+        let other = &mut self.competing[PulseKind::Wall as usize];
+        other.iter_mut().for_each(|other| other.picked.time_s -= calibration.skew_s);
+        self
+    }
+
+    /// A pulse's height in N, if its sensor is calibrated.
+    pub fn force_n(&self, kind: PulseKind) -> Option<f64> {
+        Some(self.pulse(kind)?.height / self.calibration.sensitivity_v_n(kind)?)
+    }
+
     /// Times of flight and height ratios from the three pulses.
     pub fn flight(self) -> Flight {
         let height = |picked: Picked| Estimate { value: picked.height, sigma: picked.height_sigma };
+        let [sensor, wall] = self.calibration.sensitivities_v_n.unwrap_or([1.0; 2]);
+        let force = |of: Estimate| Estimate {
+            value: of.value * (sensor / wall),
+            sigma: of.sigma * (sensor / wall),
+        };
         // The error of having taken another maximum for the largest: as far as that lies off, with
         // the root of its probability.
         let time = |picked: Picked, kind: PulseKind| {
@@ -284,7 +334,7 @@ impl Picks {
             reflected_s: back.map(|back| between(wall, back)),
             covariance_s2: back.map_or(0.0, |_| -wall.sigma.powi(2)),
             interval_error: 0.0,
-            wall_over_incident: height(self.wall).over(incident),
+            wall_over_incident: force(height(self.wall)).over(incident),
             reflected_over_incident: self.reflected.map(|back| height(back).over(incident)),
             picks: self,
         }

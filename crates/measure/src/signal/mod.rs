@@ -43,7 +43,10 @@ pub use self::{
         Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Normalisation, Polarity,
         Pulse, PulseKind, PulseLimits, QualityFlag, normalisation, pulses,
     },
-    flight::{Flight, Measured, SignalOptions, mean_systematic, measure, without_systematic},
+    flight::{
+        Flight, Measured, SensorCalibration, SignalOptions, mean_systematic, measure,
+        without_systematic,
+    },
     pick::{CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation},
     power_law::{FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty},
     spikes::without_spikes,

@@ -1,6 +1,6 @@
 use super::*;
 use hertzchain_measure::MeasureError;
-use hertzchain_measure::signal::{Picks, Systematic};
+use hertzchain_measure::signal::{Picks, SensorCalibration, Systematic};
 use std::path::PathBuf;
 
 fn measured(shots: usize) -> Measurement {
@@ -20,6 +20,7 @@ fn measured(shots: usize) -> Measurement {
         wall: at(1.7e-3),
         reflected: Some(at(2.5e-3)),
         competing: [None; 3],
+        calibration: SensorCalibration::default(),
     };
     let shot = Shot {
         source: "long.npy, shot 12345 at 123.4567 s".to_owned(),

@@ -13,6 +13,7 @@ pub(crate) use clipping::clipped_top;
 use crate::error::{MeasureError, Result};
 use crate::signal::{
     Bandwidth, Channels, DigitiserRange, Estimate, Found, Normalisation, Pulse, PulseKind,
+    SensorCalibration,
 };
 use correlation::Correlator;
 
@@ -118,6 +119,8 @@ pub struct Picks {
     pub reflected: Option<Picked>,
     /// Other maxima of the three, in this order, that are nearly as high.
     pub competing: [Option<CompetingPick>; 3],
+    /// SensorCalibration that times and ratios contain.
+    pub calibration: SensorCalibration,
 }
 
 pub(crate) struct ChannelView<'a> {
@@ -231,7 +234,8 @@ pub(crate) fn pick(
     };
     let mut competing = PulseKind::ALL.map(competing);
     competing[2] = competing[2].filter(|_| reflected.is_some());
-    Ok(Picks { incident: pick(&incident)?, wall: pick(&wall)?, reflected, competing })
+    let calibration = SensorCalibration::default();
+    Ok(Picks { incident: pick(&incident)?, wall: pick(&wall)?, reflected, competing, calibration })
 }
 
 /// A pulse's maximum by a fit to the samples about it, in samples.
