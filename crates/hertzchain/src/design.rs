@@ -139,7 +139,7 @@ fn kind(of: WayKind) -> Kind {
 ///
 /// # Errors
 /// What is in the way of the fit or of a candidate's curve.
-pub fn run_design(
+pub(crate) fn run_design(
     problem: &CurveProblem,
     targets: &[usize],
     speeds: &[f64],
@@ -203,7 +203,7 @@ fn called(problem: &CurveProblem, at: usize, aim: &Aim) -> (String, String) {
 
 impl DesignResult {
     /// What can't be tightened, and what is in its place, one sentence a line.
-    pub fn unidentifiable(&self, problem: &CurveProblem) -> Vec<String> {
+    pub(crate) fn unidentifiable(&self, problem: &CurveProblem) -> Vec<String> {
         let open = self.design.open.iter().map(|words| {
             format!("Nothing that could be measured determines this combination: {words}")
         });

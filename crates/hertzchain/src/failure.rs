@@ -91,7 +91,7 @@ impl std::error::Error for Failure {}
 impl Failure {
     /// What kept a shot from being computed, at the place in the experiment
     /// that has to do with it; what the command line asks for has no place.
-    pub fn of_shot(experiment: &Experiment, how: &How, error: StudyError) -> Self {
+    pub(crate) fn of_shot(experiment: &Experiment, how: &How, error: StudyError) -> Self {
         let asked = how.solver.is_some() || how.step.is_some() || how.accuracy.is_some();
         match &error {
             _ if asked => error.into(),
@@ -103,7 +103,7 @@ impl Failure {
 
     /// Mistakes at a speed that an option gave: what would underline the speed
     /// in the file is described of the option instead.
-    pub fn at_option(option: &str, mistakes: Mistakes) -> Self {
+    pub(crate) fn at_option(option: &str, mistakes: Mistakes) -> Self {
         match of_speed(&mistakes) {
             Some(text) => Self::User(format!("{option}: {text}")),
             None => mistakes.into(),

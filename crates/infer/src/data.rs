@@ -133,7 +133,7 @@ impl DataRow {
     }
 
     /// The observables that were measured.
-    pub fn observables(&self) -> impl Iterator<Item = Observable> + '_ {
+    pub(crate) fn observables(&self) -> impl Iterator<Item = Observable> + '_ {
         Observable::ALL.into_iter().filter(|of| self.value(*of).is_some())
     }
 

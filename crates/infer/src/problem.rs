@@ -80,15 +80,6 @@ impl Prior {
         }
     }
 
-    /// ln of the density over θ up to a constant.
-    pub fn ln_density(&self, value: f64) -> f64 {
-        let square = self.residual(value).map_or(0.0, |r| -0.5 * r * r);
-        match self {
-            Self::LogNormal { .. } if value > 0.0 => square - value.ln(),
-            _ => square,
-        }
-    }
-
     fn is_valid(&self) -> bool {
         let width = |w: f64| w > 0.0 && w.is_finite();
         match *self {

@@ -86,7 +86,7 @@ pub struct Rows {
 
 impl Rows {
     /// Adds a shot.
-    pub fn add(&mut self, shot: &BatchShot) {
+    pub(crate) fn add(&mut self, shot: &BatchShot) {
         let BatchShot { place, speed_m_s, .. } = *shot;
         if !shot.warnings.is_empty() {
             let first = || WarningSummary { place, lines: shot.warnings.clone(), shots: 0 };

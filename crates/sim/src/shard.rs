@@ -77,7 +77,7 @@ impl Shard {
     }
 
     /// The places from 0 of what is in this shard, of so many in all.
-    pub fn places(self, count: usize) -> impl Iterator<Item = usize> {
+    pub(crate) fn places(self, count: usize) -> impl Iterator<Item = usize> {
         (self.number - 1..count).step_by(self.of)
     }
 }

@@ -68,7 +68,7 @@ impl Piece<'_> {
     }
 
     /// Energy terms at the start of the step, when a budget is kept.
-    pub fn budget(&self) -> Option<Budget> {
+    pub(crate) fn budget(&self) -> Option<Budget> {
         let meter = self.meter?;
         let asleep = |i: &usize| !self.is_awake(*i) && self.state.v[*i] != 0.0;
         if self.slow.is_none() && !(0..self.state.x.len()).any(|i| asleep(&i)) {
@@ -91,7 +91,7 @@ impl Piece<'_> {
     }
 
     /// Whether a contact is open during the step (with fixed steps: at its start).
-    pub fn is_open(&self, contact: usize) -> bool {
+    pub(crate) fn is_open(&self, contact: usize) -> bool {
         match self.is_slow(contact) {
             true => self.overlap(contact, 0.0).0 < 0.0,
             false => self.state.mode[contact] == ContactMode::Open,

@@ -105,7 +105,7 @@ impl Inferred {
     }
 
     /// Whether priors determine what the data leave open.
-    pub fn is_closed_by_priors(&self) -> bool {
+    pub(crate) fn is_closed_by_priors(&self) -> bool {
         let any = self.parameters.iter().any(|parameter| parameter.prior != Prior::Flat);
         any && (0..self.parameters.len()).all(|at| self.standard_error(at).is_finite())
     }
@@ -117,7 +117,7 @@ impl Inferred {
     }
 
     /// How far from its bound a parameter may be, if it lies there.
-    pub fn limit(&self, at: usize) -> Option<&Limit> {
+    pub(crate) fn limit(&self, at: usize) -> Option<&Limit> {
         let limits = self.limits.as_ref().ok()?;
         limits.iter().find(|limit| limit.parameter == at)
     }

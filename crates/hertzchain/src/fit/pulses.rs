@@ -72,7 +72,7 @@ fn with_filter(experiment: &Experiment, arguments: &Arguments) -> Result<Experim
 }
 
 /// Refused records that are reported one by one.
-pub const REPORTED: usize = 5;
+pub(crate) const REPORTED: usize = 5;
 
 /// An error, and what was refused before it.
 fn none_left(error: &dyn std::fmt::Display, refused: &[String]) -> Failure {

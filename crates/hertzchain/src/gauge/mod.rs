@@ -125,7 +125,7 @@ const USUAL: [&str; 2] = ["pump", "dry"];
 ///
 /// # Errors
 /// A model that can't be read or has no such case.
-pub fn models(arguments: &Arguments, cases: [&str; 2]) -> Result<[Experiment; 2], Failure> {
+pub(crate) fn models(arguments: &Arguments, cases: [&str; 2]) -> Result<[Experiment; 2], Failure> {
     let (wet, dry) = (arguments.model.as_deref(), arguments.dry_model.as_deref());
     Ok([
         inference::opened_or((wet, &arguments.preset), USUAL[0], cases[0])?,

@@ -76,7 +76,10 @@ pub fn is_meant(name: &str, parameter: &str) -> bool {
 ///
 /// # Errors
 /// No such number, or no positive size.
-pub fn systematic(experiment: &Experiment, one: &Assignment) -> Result<(String, f64), InferError> {
+pub(crate) fn systematic(
+    experiment: &Experiment,
+    one: &Assignment,
+) -> Result<(String, f64), InferError> {
     let Assignment { name, text } = one;
     let found = FreeNumber::find(experiment, name, None)?.parameters(&[]);
     let wrong = |why: String| InferError::Input(format!("--systematic {one}: {why}"));

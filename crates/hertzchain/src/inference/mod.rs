@@ -129,7 +129,7 @@ fn scatter(measured: &Measured) -> Scatter {
 }
 
 /// What is assumed of data that do not say all: for warnings.
-pub fn assumed(data: &Data, measured: &Measured) -> Option<String> {
+pub(crate) fn assumed(data: &Data, measured: &Measured) -> Option<String> {
     let all = [
         exact_speeds(data, measured),
         few_shots(data),
@@ -239,7 +239,7 @@ fn of(what: What) -> Observable {
 }
 
 /// A model's experiment, in the case of this name if it has one.
-pub fn opened(
+pub(crate) fn opened(
     file: Option<&Path>,
     preset: &Option<String>,
     case: &str,
@@ -251,7 +251,7 @@ pub fn opened(
 const USUAL: &str = "dry";
 
 /// That a model which was not named is the paper's dry chain: the first line of what comes of it.
-pub fn assumed_model(modelled: &Modelled) -> Option<String> {
+pub(crate) fn assumed_model(modelled: &Modelled) -> Option<String> {
     let is_named = modelled.model.is_some() || modelled.preset.is_some();
     let options = "--model FILE or --preset NAME";
     (!is_named).then(|| input::assumed_preset("model", "dry chain", USUAL, options))

@@ -433,7 +433,7 @@ pub enum Method {
 
 impl ModelOptions {
     /// The same of another model, a file or a preset.
-    pub fn of_other(&self, model: &str) -> Self {
+    pub(crate) fn of_other(&self, model: &str) -> Self {
         let file = Some(PathBuf::from(model)).filter(|file| file.exists());
         let preset = file.is_none().then(|| model.to_owned());
         Self { preset, model: file, ..self.clone() }

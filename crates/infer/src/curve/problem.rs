@@ -47,7 +47,7 @@ impl MeasuredCurve {
     }
 
     /// The same with the model's parameters from elsewhere.
-    pub fn supplied(self, supplies: Vec<Supply>) -> Self {
+    pub(crate) fn supplied(self, supplies: Vec<Supply>) -> Self {
         Self { supplies, ..self }
     }
 
@@ -100,7 +100,7 @@ impl MeasuredCurve {
     }
 
     /// Predictions at the data's speeds, one set of rows a point of the problem.
-    pub fn predicted(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Predicted>, ModelError>> {
+    pub(crate) fn predicted(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Predicted>, ModelError>> {
         self.predicted_at(points, &Speeds::of_rows(&self.data.speeds_m_s()))
     }
 

@@ -1,10 +1,9 @@
-//! Tables of measured curves: a file's text, or what `measure` returns in memory.
+//! Tables of measured curves.
 
 use super::{Data, DataRow, Freedom, Observable};
 use crate::InferError;
 use csv::{ReaderBuilder, Trim};
-use hertzchain_measure::Case;
-use hertzchain_measure::signal::{Estimate, Summary};
+use hertzchain_measure::signal::Estimate;
 
 /// Standard errors for tables that have no columns of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -70,55 +69,6 @@ impl Data {
         let (titles, records) =
             records(text).map_err(|what| InferError::Input(format!("{file}: {what}")))?;
         Self::from_records(file, &titles, records, selection)
-    }
-
-    /// The curve of a case that `measure` returned: the same as through the file that it writes.
-    ///
-    /// # Errors
-    /// The first row and column that can't be used.
-    pub fn from_curve(curve: &Case, selection: &Selection) -> Result<Self, InferError> {
-        let mut titles: Vec<String> = Vec::new();
-        let mut records = Vec::new();
-        for (at, row) in curve.rows.iter().enumerate() {
-            let mut cells: Vec<(String, Option<f64>)> = vec![
-                ("speed_m_s".into(), Some(row.speed_m_s.value)),
-                ("speed_error_m_s".into(), Some(row.speed_m_s.sigma)),
-                ("speed_error_shots".into(), Some(row.speed_error_shots as f64)),
-                ("shots".into(), Some(row.shots.0 as f64)),
-                ("tof_incident_shared_s".into(), Some(row.shared_s[0])),
-                ("tof_reflected_shared_s".into(), Some(row.shared_s[1])),
-                (CORRELATIONS[0].into(), row.correlation),
-                (CORRELATIONS[1].into(), row.correlation_at_mean_speed),
-            ];
-            let mut estimate = |name: &str, value: Option<f64>, error: Option<f64>| {
-                cells.push((name.to_owned(), value));
-                cells.push((format!("{name}_error"), error));
-            };
-            let means: [Option<Summary>; 4] = [
-                Some(row.incident_s),
-                row.reflected_s,
-                Some(row.wall_over_incident),
-                row.reflected_over_incident,
-            ];
-            for (of, mean) in Observable::ALL.into_iter().zip(&means) {
-                estimate(of.column(), mean.map(|mean| mean.mean), mean.map(|mean| mean.error));
-            }
-            for (name, value) in AT_MEAN_SPEED.into_iter().zip(row.at_mean_speed_s) {
-                estimate(name, value.map(|of| of.value), value.map(|of| of.sigma));
-            }
-            for (of, mean) in Observable::ALL.into_iter().zip(&means) {
-                let count = mean.map(|mean| mean.count as f64);
-                cells.push((format!("{}_count", of.column()), count));
-            }
-            let (names, values): (Vec<String>, Vec<Option<f64>>) = cells.into_iter().unzip();
-            titles = names;
-            // A file has no cell for what is no number.
-            let cells = values.into_iter().map(|value| Ok(value.filter(|value| value.is_finite())));
-            let (line, case) = (at as u64 + 2, curve.name.clone());
-            records.push(Record { line, case, cells: cells.collect() });
-        }
-        titles.push("case".into());
-        Self::from_records("measured curve", &titles, records, selection)
     }
 
     fn from_records(

@@ -240,11 +240,6 @@ impl Chain {
         self.accepted as f64 / self.proposed()
     }
 
-    /// Share of proposals at which the model failed.
-    pub fn failures(&self) -> f64 {
-        self.failed as f64 / self.proposed()
-    }
-
     fn proposed(&self) -> f64 {
         (self.steps as f64 * self.places.len() as f64).max(1.0)
     }

@@ -88,7 +88,7 @@ pub enum ClaimError {
 }
 
 /// Decides a claim on numbers.
-pub type Predicate<E> = fn(&Claim, &E) -> ClaimFinding;
+pub(crate) type Predicate<E> = fn(&Claim, &E) -> ClaimFinding;
 
 /// A claim and the code that decides it on numbers of a kind: those of single
 /// shots, if nothing else is said.

@@ -16,7 +16,7 @@ pub const SPEEDS_M_S: [f64; 31] = [
 pub const CASES: [&str; 6] = ["hertz", "hertz-viscoelastic", "dry", "pump", "gear", "motor"];
 
 /// The wet ones.
-pub const OILS: [&str; 3] = ["pump", "gear", "motor"];
+pub(crate) const OILS: [&str; 3] = ["pump", "gear", "motor"];
 
 /// The paper's chains in one reading.
 #[derive(Clone, Debug)]

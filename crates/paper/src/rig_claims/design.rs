@@ -121,7 +121,7 @@ impl TriedRig {
 
     /// With every factor at its lowest or highest level; the name has them in the
     /// order of [`FACTORS`].
-    pub fn corner(high: [bool; 4]) -> Self {
+    pub(crate) fn corner(high: [bool; 4]) -> Self {
         let value = |at: usize| FACTORS[at].levels[if high[at] { 2 } else { 0 }];
         let values = [0, 1, 2, 3].map(value);
         let names = FACTORS.iter().zip(values);

@@ -44,7 +44,7 @@ impl RandomStream {
     }
 
     /// Draws from the standard normal distribution.
-    pub fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }
 

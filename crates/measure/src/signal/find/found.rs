@@ -86,7 +86,7 @@ impl QualityFlag {
     }
 
     /// A short code, without the pulse.
-    pub fn code(&self) -> &'static str {
+    pub(crate) fn code(&self) -> &'static str {
         match self {
             Self::Saturation(_) => "saturated",
             Self::Missing(_) => "missing",
