@@ -101,7 +101,7 @@ pub struct Evaluator<E = Evidence> {
 
 impl<E> Evaluator<E> {
     /// Decides the claim on numbers.
-    pub(crate) fn decide(&self, evidence: &E) -> ClaimFinding {
+    pub fn decide(&self, evidence: &E) -> ClaimFinding {
         (self.predicate)(&self.claim, evidence)
     }
 }

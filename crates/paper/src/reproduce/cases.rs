@@ -27,7 +27,7 @@ impl Cases {
     ///
     /// # Errors
     /// A reading that leaves something outside a chain.
-    pub(crate) fn new(reading: &Reading) -> Result<Self, ReproduceError> {
+    pub fn new(reading: &Reading) -> Result<Self, ReproduceError> {
         let open = |case| {
             let experiment = preset(case).map_err(ReproduceError::Preset)?;
             Ok((case, experiment.with_reading(reading)?))
