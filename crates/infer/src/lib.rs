@@ -24,7 +24,7 @@ pub use self::{
     covariance::Covariance,
     curve::{
         Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Kind, MeasuredCurve, Model,
-        Predicted, Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
+        Predicted, Prospect, Speeds, Supply, Surrogate, Way, ways,
     },
     data::{
         Data, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, widening,

@@ -16,7 +16,7 @@ mod whiten;
 pub use self::{
     advice::{Advice, Prospect},
     band::FitCurve,
-    candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, ways},
+    candidates::{Choices, ExpectedErrors, Kind, Way, ways},
     joint::{CurveProblem, Supply},
     model::{Model, Predicted, Speeds},
     problem::MeasuredCurve,

@@ -4,6 +4,7 @@ use crate::InferError;
 use crate::data::with_plain_ends;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use hertzchain_chain::{BeadPair, Material};
+use serde::Deserialize;
 
 /// The table that comes with the program: the paper's three.
 const KNOWN: &str = include_str!("../../data/oils.csv");
@@ -101,25 +102,28 @@ pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, InferError> {
     let mut reader =
         ReaderBuilder::new().comment(Some(b'#')).trim(Trim::All).from_reader(text.as_bytes());
     let wrong = |line: u64, what: String| InferError::Input(format!("{file}, line {line}: {what}"));
-    let titles = reader.headers().map_err(|error| wrong(1, error.to_string()))?;
-    let titles = titles.clone();
-    let oil = |record: Result<StringRecord, csv::Error>| {
+    let titles = reader.headers().map_err(|error| wrong(1, error.to_string()))?.clone();
+    let mut all: Vec<Oil> = Vec::new();
+    for record in reader.records() {
         let record = record.map_err(|error| wrong(0, error.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let row = Row { titles: &titles, record: &record };
-        row.oil().map_err(|what| wrong(line, what))
-    };
-    let mut all: Vec<Oil> = Vec::new();
-    for (at, record) in reader.records().enumerate() {
-        let line = record.as_ref().ok().and_then(StringRecord::position);
-        let line = line.map_or(at as u64 + 2, csv::Position::line);
-        let found = oil(record)?;
-        if all.iter().any(|known| known.name == found.name) {
+        let row = record.deserialize::<OilRow>(Some(&titles)).map_err(|error| {
+            let at = match error.kind() {
+                csv::ErrorKind::Deserialize { err, .. } => err.field(),
+                _ => None,
+            };
+            let cell = |of: &StringRecord| of.get(at? as usize).map(str::to_owned);
+            let (title, text) = (cell(&titles), cell(&record));
+            let text = text.unwrap_or_default();
+            wrong(line, format!("{}: `{text}` is no number", title.unwrap_or_default()))
+        })?;
+        let oil = row.oil().map_err(|what| wrong(line, what))?;
+        if all.iter().any(|known| known.name == oil.name) {
             let what =
-                format!("{} stands in the table twice: give each oil its own name", found.name);
+                format!("{} stands in the table twice: give each oil its own name", oil.name);
             return Err(wrong(line, what));
         }
-        all.push(found);
+        all.push(oil);
     }
     Ok(all)
 }
@@ -127,53 +131,59 @@ pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, InferError> {
 /// Contact laws end below this Poisson ratio; the paper's effective materials go beyond 1/2.
 const BELOW: f64 = 1.0;
 
-struct Row<'a> {
-    titles: &'a StringRecord,
-    record: &'a StringRecord,
+/// A line of a table; columns that it does not have are empty.
+#[derive(Deserialize, Default)]
+#[serde(default)]
+struct OilRow {
+    name: String,
+    young_modulus_pa: Option<f64>,
+    poisson_prefactor: Option<f64>,
+    poisson_exponent: Option<f64>,
+    viscosity_prefactor_pa_s: Option<f64>,
+    viscosity_exponent: Option<f64>,
+    stiffness_prefactor: Option<f64>,
+    stiffness_exponent: Option<f64>,
+    relaxation_prefactor_s: Option<f64>,
+    relaxation_exponent: Option<f64>,
+    source: String,
 }
 
-impl Row<'_> {
-    fn text(&self, column: &str) -> &str {
-        let at = self.titles.iter().position(|title| title == column);
-        at.and_then(|at| self.record.get(at)).unwrap_or_default()
+/// A power law of two columns; its exponent is 0 where none stands.
+fn law(
+    name: &str,
+    prefactor: Option<f64>,
+    exponent: Option<f64>,
+    below: f64,
+) -> Result<Option<OilLaw>, String> {
+    let exponent = exponent.unwrap_or(0.0);
+    let positive = |value: f64| value > 0.0 && value < below && exponent.is_finite();
+    match prefactor {
+        Some(value) if !positive(value) => Err(format!(
+            "{name} is {value}, with the exponent {exponent}; expected more than 0, less than {below}"
+        )),
+        value => Ok(value.map(|prefactor| OilLaw { prefactor, exponent })),
     }
+}
 
-    fn number(&self, column: &str) -> Result<Option<f64>, String> {
-        let text = self.text(column);
-        if text.is_empty() {
-            return Ok(None);
-        }
-        let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-        let number = number.ok_or_else(|| format!("{column}: `{text}` is no number"))?;
-        Ok(Some(number))
-    }
-
-    /// A power law of two columns; its exponent is 0 where none stands.
-    fn law(&self, prefactor: &str, exponent: &str) -> Result<Option<OilLaw>, String> {
-        let exponent = self.number(exponent)?.unwrap_or(0.0);
-        match self.number(prefactor)? {
-            None => Ok(None),
-            Some(value) if prefactor == "poisson_prefactor" && value >= BELOW => Err(format!(
-                "{prefactor} is {value}, the Poisson ratio at 1 m/s; expected less than {BELOW}"
-            )),
-            Some(value) if value > 0.0 => Ok(Some(OilLaw { prefactor: value, exponent })),
-            Some(value) => Err(format!("{prefactor} is {value}; expected more than 0")),
-        }
-    }
-
-    fn oil(&self) -> Result<Oil, String> {
-        let name = self.text("name");
-        if name.is_empty() {
+impl OilRow {
+    fn oil(self) -> Result<Oil, String> {
+        if self.name.is_empty() {
             return Err("an oil without a name".to_owned());
         }
+        let any = |name: &str, prefactor, exponent| law(name, prefactor, exponent, f64::INFINITY);
+        let poisson = (self.poisson_prefactor, self.poisson_exponent);
         let material = (
-            self.law("young_modulus_pa", "")?,
-            self.law("poisson_prefactor", "poisson_exponent")?,
-            self.law("viscosity_prefactor_pa_s", "viscosity_exponent")?,
+            any("young_modulus_pa", self.young_modulus_pa, None)?,
+            law("poisson_prefactor", poisson.0, poisson.1, BELOW)?,
+            any(
+                "viscosity_prefactor_pa_s",
+                self.viscosity_prefactor_pa_s,
+                self.viscosity_exponent,
+            )?,
         );
         let contact = (
-            self.law("stiffness_prefactor", "stiffness_exponent")?,
-            self.law("relaxation_prefactor_s", "relaxation_exponent")?,
+            any("stiffness_prefactor", self.stiffness_prefactor, self.stiffness_exponent)?,
+            any("relaxation_prefactor_s", self.relaxation_prefactor_s, self.relaxation_exponent)?,
         );
         let description = match (material, contact) {
             ((Some(young), Some(poisson_ratio), Some(viscosity_pa_s)), (None, None)) => {
@@ -188,11 +198,12 @@ impl Row<'_> {
             }
             _ => {
                 return Err(format!(
-                    "{name}: expected either young_modulus_pa, poisson_prefactor and \
-                     viscosity_prefactor_pa_s, or stiffness_prefactor and relaxation_prefactor_s"
+                    "{}: expected either young_modulus_pa, poisson_prefactor and \
+                     viscosity_prefactor_pa_s, or stiffness_prefactor and relaxation_prefactor_s",
+                    self.name
                 ));
             }
         };
-        Ok(Oil { name: name.to_owned(), description, source: self.text("source").to_owned() })
+        Ok(Oil { name: self.name, description, source: self.source })
     }
 }
