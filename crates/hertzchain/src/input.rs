@@ -124,8 +124,8 @@ pub(crate) fn adjust(how: &How, plan: &mut Plan) {
     if let Some(pick) = how.pick {
         plan.pick = match pick {
             Pick::Peak => study::Pick::Peak,
-            Pick::Flank10 => study::Pick::Flank(0.1),
-            Pick::Flank50 => study::Pick::Flank(0.5),
+            Pick::Flank10 => study::Pick::Flank10,
+            Pick::Flank50 => study::Pick::Flank50,
             Pick::CrossCorrelation => study::Pick::CrossCorrelation,
         };
     }

@@ -187,8 +187,6 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         holds(&run_gauge, "oils.csv", column, &found["oils"], pointer);
     }
     holds(&run_gauge, "dry.csv", "standard_error", &found["dry"], "/standard_error");
-    let laws = Value::from(vec![found["stiffness_law"].clone(), found["relaxation_law"].clone()]);
-    holds(&run_gauge, "laws.csv", "exponent_error", &laws, "/exponent_error");
     let (titles, pairs) = table(&run_gauge, "contacts.csv");
     let taken = titles.iter().position(|title| title == "taken").unwrap();
     let taken: Vec<_> = pairs.iter().filter(|line| line[taken] == "true").collect();

@@ -102,7 +102,7 @@ impl Counts {
 
 /// How far ln K and ln A are from the true ones, in the pair's own errors.
 fn pulls(pair: &Pair, exact: [f64; 2]) -> [f64; 2] {
-    let covariance = pair.covariance();
+    let covariance = pair.covariance;
     [0, 1].map(|of| (pair.ln[of] - exact[of].ln()) / covariance[of][of].sqrt())
 }
 

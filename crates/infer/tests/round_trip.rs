@@ -4,7 +4,7 @@ use crate::common::{Noise, Truth, model, problem, speeds_m_s};
 use hertzchain_experiment::preset;
 use hertzchain_infer::{
     Covariance, Criteria, CurveProblem, Data, Fitting, Goodness, Identifiability, Observable,
-    Predicted, Problem, Surrogate, fit,
+    Problem, Surrogate, fit,
 };
 use hertzchain_measure::signal::coverage;
 
@@ -156,26 +156,9 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     // One speed determines two numbers: three can't even be asked for.
     let few = hertzchain_infer::CurveProblem::new(three.clone(), data.clone(), parameters);
     let reported = few.unwrap_err().to_string();
-    for words in [
-        "2 measured values for 3 free",
-        "enter only through K and A",
-        "--free K,A",
-        "K = 8.7926e9 N/m^1.5, A = 3.3853e-7 s",
-    ] {
+    for words in ["2 measured values for 3 free", "enter only through K and A", "--free K,A"] {
         assert!(reported.contains(words), "{words}: {reported}");
     }
-    // Those of the example, by hand from both equations of the materials.
-    let other = preset("hertz-viscoelastic").unwrap();
-    let [young, eta] = ["Y = ", "eta = "].map(|key| {
-        let rest = reported.rsplit(key).next().unwrap();
-        rest.split(' ').next().unwrap().parse::<f64>().unwrap()
-    });
-    let other =
-        other.set(&[("young_modulus", young), ("poisson_ratio", 0.32), ("shear_viscosity", eta)]);
-    let [curve, same] = [&viscoelastic, &other.unwrap()].map(|of| Truth::of(of, &[0.5]).curve);
-    let incident = |curve: &[Predicted]| curve[0][0].unwrap();
-    // Five digits are shown, of which times of flight depend on the 2/5th power.
-    assert!((incident(&curve) / incident(&same) - 1.0).abs() < 1e-4);
     // Nor do more speeds determine three.
     let data = Truth::of(&viscoelastic, &speeds_m_s(8)).measured(3);
     let three = problem(&three, data.clone());

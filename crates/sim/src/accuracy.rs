@@ -1,10 +1,11 @@
 //! From the accuracy that is asked to a solver that delivers it.
 
 use crate::duration::has_wall;
-use crate::plan::{Pick, Plan, Solver};
+use crate::plan::{Plan, Solver};
 use hertzchain_chain::ensemble::Precision;
 use hertzchain_chain::wave::Method;
 use hertzchain_chain::{Start, System, Tension};
+use hertzchain_experiment::Pick;
 
 /// Tightest tolerance per step: below it rounding, not the step, decides.
 pub(crate) const TIGHTEST: f64 = 1e-13;

@@ -4,21 +4,19 @@ use crate::calibration::Calibration;
 use crate::engine::{Control, run_plans};
 use crate::error::StudyError;
 use crate::fingerprint::{Fingerprint, Inputs};
-use crate::plan::{Pick, Plan, Solver};
+use crate::plan::{Plan, Solver};
 use crate::result::Rows;
 use crate::shard::Shard;
 use crate::shot::Shot;
 use crate::stop::stopped;
 use hertzchain_chain::InstructionSet;
-use hertzchain_experiment::{Experiment, Units, Warning};
+use hertzchain_experiment::{Experiment, Pick, Units, Warning};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
 /// How the errors of the shots of a batch are controlled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ErrorControl {
     /// Every shot is compared with two more, with longer steps.
     PerShot,
@@ -42,7 +40,7 @@ impl ErrorControl {
 }
 
 /// Options of a batch of shots.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct BatchOptions {
     /// Relative accuracy asked of times of flight.
     pub accuracy: f64,
@@ -60,7 +58,6 @@ pub struct BatchOptions {
     pub error_control: ErrorControl,
     /// Vector instructions. Other ones have other last bits: workers of one
     /// batch must have the same.
-    #[serde(skip)]
     pub set: InstructionSet,
 }
 
@@ -72,7 +69,7 @@ impl BatchOptions {
             accuracy: asked.accuracy,
             solver: asked.into(),
             duration_s: asked.duration_s,
-            pick: experiment.pick().into(),
+            pick: experiment.pick(),
             rebound: false,
             checked: false,
             error_control: ErrorControl::default(),
@@ -204,12 +201,9 @@ impl Batch {
     /// paths, times or machines.
     pub fn fingerprint(&self) -> Fingerprint {
         *self.fingerprint.get_or_init(|| {
-            // Plain numbers always have a form in JSON, from which their bits follow.
-            let options = serde_json::to_string(&self.options).unwrap_or_default();
             let inputs = Inputs::of("sweep")
                 .text("experiment", &self.experiment.canonical_text())
-                .text("options", &options)
-                .text("set", self.options.set.name())
+                .text("options", &format!("{:?}", self.options))
                 .numbers("speeds_m_s", &self.speeds_m_s);
             let numbers = self.numbers.iter();
             let all = numbers.fold(inputs, |inputs, (path, values)| inputs.numbers(path, values));

@@ -8,13 +8,14 @@ use crate::accuracy;
 use crate::calibration::Calibration;
 use crate::duration::{self, has_wall};
 use crate::error::StudyError;
-use crate::plan::{Pick, Plan, Solver};
+use crate::plan::{Plan, Solver};
 use crate::prepared::{closed_gaps, is_ambiguous};
 use crate::shot::{Conditioning, Shot, ambiguous, shoot, shoot_checked};
 use crate::stop::stopped;
 use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
 use hertzchain_chain::observe::{Maximum, Passage, Passages, Shape, Signal};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
+use hertzchain_experiment::Pick;
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -2,14 +2,12 @@
 
 use crate::error::StudyError;
 use hertzchain_chain::{Chain, ChainError, Sensor, Start, System};
-use hertzchain_experiment::{self as experiment, Experiment, Mistakes, Warning};
-use serde::{Deserialize, Serialize};
+use hertzchain_experiment::{self as experiment, Experiment, Mistakes, Pick, Warning};
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
 
 /// How the motion is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Solver {
     /// Dormand–Prince 5(4) with steps that end at contact changes.
     #[default]
@@ -43,36 +41,6 @@ impl From<experiment::Solver> for Solver {
             experiment::Method::Adaptive => Self::Adaptive,
             experiment::Method::Rk4 => Self::Rk4 { step_s },
             experiment::Method::Verlet => Self::Verlet { step_s },
-        }
-    }
-}
-
-/// Where a pulse is timed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Pick {
-    /// At its maximum.
-    #[default]
-    Peak,
-    /// Where its rising flank passes this fraction of its maximum.
-    Flank(f64),
-    /// By the lag of the largest cross-correlation of the two pulses.
-    CrossCorrelation,
-}
-
-impl Pick {
-    /// Every way that an experiment file can ask for.
-    pub const ALL: [Self; 4] =
-        [Self::Peak, Self::Flank(0.1), Self::Flank(0.5), Self::CrossCorrelation];
-}
-
-impl From<experiment::Pick> for Pick {
-    fn from(pick: experiment::Pick) -> Self {
-        match pick {
-            experiment::Pick::Peak => Self::Peak,
-            experiment::Pick::Flank10 => Self::Flank(0.1),
-            experiment::Pick::Flank50 => Self::Flank(0.5),
-            experiment::Pick::CrossCorrelation => Self::CrossCorrelation,
         }
     }
 }
@@ -189,7 +157,7 @@ impl Plan {
             accuracy: asked.accuracy,
             solver: asked.into(),
             duration_s: asked.duration_s,
-            pick: experiment.pick().into(),
+            pick: experiment.pick(),
             ..Self::new(chain, experiment.sensor_bead())
         };
         plan.chain.system = Ok(Arc::new(system)).into();
@@ -217,7 +185,7 @@ impl Plan {
     /// This plan, timed by peaks, with all other ways to compare with.
     pub fn comparing_picks(mut self) -> Self {
         self.pick = Pick::Peak;
-        self.compare = Pick::ALL[1..].to_vec();
+        self.compare = vec![Pick::Flank10, Pick::Flank50, Pick::CrossCorrelation];
         self
     }
 

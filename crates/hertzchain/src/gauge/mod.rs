@@ -11,7 +11,7 @@ use crate::input::assumed_preset;
 use crate::options::{CurveOptions as Measured, GaugeOptions as Arguments};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
-use hertzchain_infer::gauge::{Chains, Gauge, GaugeLaws, Oil, Verdict, WetRow, known_oils, oils};
+use hertzchain_infer::gauge::{Chains, Gauge, Oil, Verdict, WetRow, known_oils, oils};
 use hertzchain_measure::records::text;
 use std::path::Path;
 
@@ -21,8 +21,6 @@ pub struct GaugeResult {
     pub gauge: Gauge,
     /// K and A, speed by speed.
     pub rows: Vec<WetRow>,
-    /// Power laws through them, where rows determine both.
-    pub laws: Option<GaugeLaws>,
     /// Which oil.
     pub verdict: Verdict,
     /// The oils it was held against.
@@ -68,13 +66,7 @@ pub fn gauge(
     wanted()?;
     let verdict = gauge.verdict(&oils);
     wanted()?;
-    Ok(GaugeResult {
-        laws: GaugeLaws::through(&rows).ok(),
-        verdict: verdict.map_err(user)?,
-        oils,
-        rows,
-        gauge,
-    })
+    Ok(GaugeResult { verdict: verdict.map_err(user)?, oils, rows, gauge })
 }
 
 /// Presets of the paper where no model is named.

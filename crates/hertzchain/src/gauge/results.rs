@@ -3,7 +3,7 @@
 use super::GaugeResult;
 use crate::inference::references_json;
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Pair, SharedLaw, WetRow, is_determined};
+use hertzchain_infer::gauge::{Pair, WetRow, is_determined};
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -20,8 +20,6 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
         "references": references_json(&gauge.wet),
         "scanned_s": gauge.scanned_s(),
         "contacts": run_gauge.rows.iter().map(row).collect::<Value>(),
-        "stiffness_law": run_gauge.laws.as_ref().map(|laws| law_json(&laws.stiffness)),
-        "relaxation_law": run_gauge.laws.as_ref().map(|laws| law_json(&laws.relaxation)),
         "to_add": gauge.to_add(),
         "oils": verdict.matches.iter().map(|found| json!({
             "name": found.oil, "distance": found.distance,
@@ -49,7 +47,7 @@ fn row(row: &WetRow) -> Value {
             match &contact.combination {
                 None => {
                     all["relaxation_time_s"] = number(a, a_sd);
-                    all["ln_covariance"] = json!(contact.first.covariance());
+                    all["ln_covariance"] = json!(contact.first.covariance);
                     all["branch"] = json!(contact.branch.name());
                     all["scan_complete"] = contact.is_complete.into();
                     all["others"] = contact.others.iter().map(other).collect();
@@ -77,20 +75,10 @@ fn other(pair: &Pair) -> Value {
     json!({
         "stiffness": k, "stiffness_error": finite(k_sd),
         "relaxation_time_s": a, "relaxation_time_s_error": finite(a_sd),
-        "ln_covariance": pair.covariance().map(|row| row.map(finite)),
+        "ln_covariance": pair.covariance.map(|row| row.map(finite)),
     })
 }
 
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
-}
-
-fn law_json(law: &SharedLaw) -> Value {
-    json!({
-        "prefactor": law.law.prefactor,
-        "prefactor_relative_error": law.ln_prefactor_sd,
-        "exponent": law.law.exponent,
-        "exponent_error": law.exponent_sd,
-        "reduced_chi_square": law.reduced_chi_square,
-    })
 }

@@ -3,7 +3,7 @@
 use super::GaugeResult;
 use crate::csv::{Cell, Csv};
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Branch, Contact, Match, NuisanceParameter, Pair, SharedLaw, WetRow};
+use hertzchain_infer::gauge::{Branch, Contact, Match, NuisanceParameter, Pair, WetRow};
 
 /// Every table: files' names and what stands in them.
 pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
@@ -14,7 +14,6 @@ pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
         ("oils.csv", oils(run_gauge)),
     ];
     all.extend((!run_gauge.verdict.failed.is_empty()).then(|| ("failed.csv", failed(run_gauge))));
-    all.extend(run_gauge.laws.is_some().then(|| ("laws.csv", laws(run_gauge))));
     all
 }
 
@@ -105,7 +104,7 @@ fn pair(row: &WetRow, pair: &Pair) -> Line {
     let mut cells = begun(row);
     (cells[2], cells[3]) = (k.into(), k_sd.into());
     (cells[4], cells[5]) = (a.into(), a_sd.into());
-    cells[6] = pair.covariance()[0][1].into();
+    cells[6] = pair.covariance[0][1].into();
     cells
 }
 
@@ -141,29 +140,4 @@ fn oils(run_gauge: &GaugeResult) -> String {
 fn failed(run_gauge: &GaugeResult) -> String {
     let line = |(oil, why): &(String, String)| [oil.clone(), why.clone()];
     Csv::new(["name", "why"]).with_all(&run_gauge.verdict.failed, line).text()
-}
-
-/// What both laws are of, and the unit of their prefactors.
-const CALLED: [(&str, &str); 2] = [("stiffness", "N/m^1.5"), ("relaxation_time", "s")];
-
-/// One line a power law through values of single speeds.
-fn laws(run_gauge: &GaugeResult) -> String {
-    let titles =
-        "law,unit,prefactor,prefactor_relative_error,exponent,exponent_error,reduced_chi_square";
-    let line = |((name, unit), law): ((&str, &str), &SharedLaw)| -> [Cell; 7] {
-        [
-            name.into(),
-            unit.into(),
-            law.law.prefactor.into(),
-            law.ln_prefactor_sd.into(),
-            law.law.exponent.into(),
-            law.exponent_sd.into(),
-            law.reduced_chi_square.into(),
-        ]
-    };
-    let both = run_gauge
-        .laws
-        .iter()
-        .flat_map(|laws| [(CALLED[0], &laws.stiffness), (CALLED[1], &laws.relaxation)]);
-    Csv::new(titles.split(',')).with_all(both, line).text()
 }

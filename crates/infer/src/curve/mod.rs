@@ -17,9 +17,10 @@ pub use self::{
     advice::{Advice, Prospect},
     band::FitCurve,
     candidates::{Choices, ExpectedErrors, Kind, Way, ways},
-    joint::{CurveProblem, Supply},
+    joint::CurveProblem,
     model::{Model, Predicted, Speeds},
     problem::MeasuredCurve,
     surrogate::Surrogate,
 };
+pub(crate) use joint::Supply;
 pub(crate) use model::Shooting;

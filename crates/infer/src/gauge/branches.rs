@@ -1,7 +1,4 @@
-//! Which solution of each row to take, and power laws of speed through all rows.
-
-use super::rows::{Pair, WetRow};
-use hertzchain_measure::signal::{FitError, PowerLaw, power_law};
+//! Which solution of each row to take.
 
 /// The solution of a row to take, and whether that is clear: every way through another bends much
 /// more.
@@ -82,75 +79,6 @@ fn straightest(rows: &[Row]) -> Option<(f64, Vec<usize>)> {
         ways = next;
     }
     ways.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
-}
-
-/// A power law of speed through values that share a part of their errors.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SharedLaw {
-    /// The law, with standard errors from the rows' own.
-    pub law: PowerLaw,
-    /// Standard error of ln prefactor with what the rows share.
-    pub ln_prefactor_sd: f64,
-    /// Standard error of the exponent with what the rows share.
-    pub exponent_sd: f64,
-    /// Chi-square of the rows' own errors over degrees of freedom: well above 1, the values follow
-    /// no power law.
-    pub reduced_chi_square: f64,
-}
-
-/// Power laws of K and of A against speed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GaugeLaws {
-    /// K in N/m^{3/2}.
-    pub stiffness: SharedLaw,
-    /// A in s.
-    pub relaxation: SharedLaw,
-}
-
-impl GaugeLaws {
-    /// Through all rows whose K and A are known.
-    ///
-    /// # Errors
-    /// Fewer than three such rows.
-    pub fn through(rows: &[WetRow]) -> Result<Self, FitError> {
-        let known = rows.iter().filter_map(|row| {
-            let contact = row.contact.as_ref().ok().filter(|contact| contact.is_known())?;
-            Some((row.speed_m_s, &contact.first))
-        });
-        let known: Vec<(f64, &Pair)> = known.collect();
-        Ok(Self { stiffness: law(&known, 0)?, relaxation: law(&known, 1)? })
-    }
-}
-
-fn law(known: &[(f64, &Pair)], of: usize) -> Result<SharedLaw, FitError> {
-    if known.len() < 3 {
-        return Err(FitError::TooFew);
-    }
-    let speeds: Vec<f64> = known.iter().map(|(speed, _)| *speed).collect();
-    let relative: Vec<f64> = known.iter().map(|(_, c)| c.own[of][of].sqrt()).collect();
-    let through = |shift: &dyn Fn(&Pair) -> f64| {
-        let values = known.iter().map(|(_, pair)| (pair.ln[of] + shift(pair)).exp());
-        let values: Vec<f64> = values.collect();
-        let sigmas: Vec<f64> = values.iter().zip(&relative).map(|(v, r)| v * r).collect();
-        power_law(&speeds, &values, Some(&sigmas))
-    };
-    let own = through(&|_| 0.0)?;
-    let shifts = known.iter().map(|(_, c)| c.shared.len()).min().unwrap_or(0);
-    let ln_prefactor = own.prefactor_error / own.prefactor;
-    let mut variances = [ln_prefactor.powi(2), own.exponent_error.powi(2)];
-    for number in 0..shifts {
-        let moved = through(&|pair| pair.shared[number][of])?;
-        variances[0] += (moved.prefactor / own.prefactor).ln().powi(2);
-        variances[1] += (moved.exponent - own.exponent).powi(2);
-    }
-    let misses = own.residuals.iter().zip(&relative);
-    let chi_square: f64 = misses.map(|(miss, sigma)| (miss / sigma).powi(2)).sum();
-    Ok(SharedLaw {
-        ln_prefactor_sd: variances[0].sqrt(),
-        exponent_sd: variances[1].sqrt(),
-        reduced_chi_square: chi_square / (known.len() as f64 - 2.0),
-        law: own,
-    })
 }
 
 #[cfg(test)]

@@ -10,8 +10,7 @@ mod rows;
 mod verdict;
 
 pub use self::{
-    branches::{GaugeLaws, SharedLaw},
-    oils::{Description, Oil, OilLaw, known_oils, oils},
+    oils::{Oil, known_oils, oils},
     rows::{Branch, Combination, Contact, Pair, WetRow, is_determined},
     verdict::{Match, NEVER, NuisanceParameter, Verdict},
 };

@@ -2,84 +2,99 @@
 
 use crate::InferError;
 use crate::data::with_plain_ends;
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::{ErrorKind, ReaderBuilder, Trim};
 use hertzchain_chain::{BeadPair, Material};
 use serde::Deserialize;
 
 /// The table that comes with the program: the paper's three.
 const KNOWN: &str = include_str!("../../data/oils.csv");
 
-/// prefactor · v^exponent of the striker's speed v in m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OilLaw {
-    /// Value at 1 m/s.
-    pub prefactor: f64,
-    /// Exponent.
-    pub exponent: f64,
-}
-
-impl OilLaw {
-    fn at(self, speed_m_s: f64) -> f64 {
-        self.prefactor * speed_m_s.powf(self.exponent)
-    }
-}
-
-/// How an oil's contact is described.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Description {
-    /// By an effective material of both sides, as in the paper.
-    Material {
-        /// Young modulus in Pa.
-        young_modulus_pa: f64,
-        /// Poisson ratio.
-        poisson_ratio: OilLaw,
-        /// Viscosity in Pa s, shear and bulk alike.
-        viscosity_pa_s: OilLaw,
-    },
-    /// By the contact's own numbers.
-    Contact {
-        /// Hertz stiffness K in N/m^{3/2}.
-        stiffness: OilLaw,
-        /// Relaxation time A in s.
-        relaxation_s: OilLaw,
-    },
-}
-
-/// An oil of a table.
-#[derive(Clone, Debug, PartialEq)]
+/// An oil of a table, a column each: either an effective material of both sides of a contact, as in
+/// the paper, or the contact's own numbers. Those that depend on the striker's speed v in m/s are
+/// prefactor · v^exponent, constant without an exponent.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default)]
 pub struct Oil {
     /// Name.
     pub name: String,
-    /// What it makes of a contact.
-    pub description: Description,
+    /// Young modulus in Pa.
+    pub young_modulus_pa: Option<f64>,
+    /// Poisson ratio at 1 m/s.
+    pub poisson_prefactor: Option<f64>,
+    /// Its exponent.
+    pub poisson_exponent: Option<f64>,
+    /// Viscosity in Pa s at 1 m/s, shear and bulk alike.
+    pub viscosity_prefactor_pa_s: Option<f64>,
+    /// Its exponent.
+    pub viscosity_exponent: Option<f64>,
+    /// Hertz stiffness K in N/m^{3/2} at 1 m/s.
+    pub stiffness_prefactor: Option<f64>,
+    /// Its exponent.
+    pub stiffness_exponent: Option<f64>,
+    /// Relaxation time A in s at 1 m/s.
+    pub relaxation_prefactor_s: Option<f64>,
+    /// Its exponent.
+    pub relaxation_exponent: Option<f64>,
     /// Where the numbers come from.
     pub source: String,
 }
+
+/// Contact laws end below this Poisson ratio; the paper's effective materials go beyond 1/2.
+const BELOW: f64 = 1.0;
 
 impl Oil {
     /// K in N/m^{3/2} and A in s of a contact of spheres with this reduced radius
     /// R* in m, at a speed of the striker in m/s.
     pub fn contact(&self, reduced_radius_m: f64, speed_m_s: f64) -> (f64, f64) {
-        match self.description {
-            Description::Contact { stiffness, relaxation_s } => {
-                (stiffness.at(speed_m_s), relaxation_s.at(speed_m_s))
-            }
-            Description::Material { young_modulus_pa, poisson_ratio, viscosity_pa_s } => {
-                let viscosity = viscosity_pa_s.at(speed_m_s);
-                let material = Material {
-                    young_modulus_pa,
-                    poisson_ratio: poisson_ratio.at(speed_m_s),
-                    shear_viscosity_pa_s: viscosity,
-                    bulk_viscosity_pa_s: viscosity,
-                };
-                let pair = BeadPair {
-                    left: material,
-                    right: material,
-                    radius_m: reduced_radius_m,
-                    mass_kg: f64::NAN,
-                };
-                (pair.hertz_stiffness(), material.relaxation_time_s())
-            }
+        let law = |prefactor: Option<f64>, exponent: Option<f64>| {
+            prefactor.unwrap_or(f64::NAN) * speed_m_s.powf(exponent.unwrap_or(0.0))
+        };
+        if self.stiffness_prefactor.is_some() {
+            let stiffness = law(self.stiffness_prefactor, self.stiffness_exponent);
+            return (stiffness, law(self.relaxation_prefactor_s, self.relaxation_exponent));
+        }
+        let viscosity_pa_s = law(self.viscosity_prefactor_pa_s, self.viscosity_exponent);
+        let material = Material {
+            young_modulus_pa: law(self.young_modulus_pa, None),
+            poisson_ratio: law(self.poisson_prefactor, self.poisson_exponent),
+            shear_viscosity_pa_s: viscosity_pa_s,
+            bulk_viscosity_pa_s: viscosity_pa_s,
+        };
+        let pair = BeadPair {
+            left: material,
+            right: material,
+            radius_m: reduced_radius_m,
+            mass_kg: f64::NAN,
+        };
+        (pair.hertz_stiffness(), material.relaxation_time_s())
+    }
+
+    /// Checks that it has a name and either all of a material or all of a contact, in range.
+    fn check(&self) -> Result<(), String> {
+        let material = [
+            ("young_modulus_pa", self.young_modulus_pa, f64::INFINITY),
+            ("poisson_prefactor", self.poisson_prefactor, BELOW),
+            ("viscosity_prefactor_pa_s", self.viscosity_prefactor_pa_s, f64::INFINITY),
+        ];
+        let contact = [
+            ("stiffness_prefactor", self.stiffness_prefactor, f64::INFINITY),
+            ("relaxation_prefactor_s", self.relaxation_prefactor_s, f64::INFINITY),
+        ];
+        let mut all = material.iter().chain(&contact);
+        let wrong = |value: f64, below: f64| !(value > 0.0 && value < below);
+        let count = |of: &[(&str, Option<f64>, f64)]| of.iter().filter(|it| it.1.is_some()).count();
+        match all.find(|(_, value, below)| value.is_some_and(|value| wrong(value, *below))) {
+            _ if self.name.is_empty() => Err("an oil without a name".to_owned()),
+            Some((title, value, below)) => Err(format!(
+                "{title} is {}; expected more than 0, less than {below}",
+                value.unwrap_or(f64::NAN)
+            )),
+            None if matches!((count(&material), count(&contact)), (3, 0) | (0, 2)) => Ok(()),
+            None => Err(format!(
+                "{}: expected either young_modulus_pa, poisson_prefactor and \
+                 viscosity_prefactor_pa_s, or stiffness_prefactor and relaxation_prefactor_s",
+                self.name
+            )),
         }
     }
 }
@@ -107,103 +122,22 @@ pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, InferError> {
     for record in reader.records() {
         let record = record.map_err(|error| wrong(0, error.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let row = record.deserialize::<OilRow>(Some(&titles)).map_err(|error| {
+        let oil: Oil = record.deserialize(Some(&titles)).map_err(|error| {
             let at = match error.kind() {
-                csv::ErrorKind::Deserialize { err, .. } => err.field(),
-                _ => None,
+                ErrorKind::Deserialize { err, .. } => err.field().map_or(0, |at| at as usize),
+                _ => 0,
             };
-            let cell = |of: &StringRecord| of.get(at? as usize).map(str::to_owned);
-            let (title, text) = (cell(&titles), cell(&record));
-            let text = text.unwrap_or_default();
-            wrong(line, format!("{}: `{text}` is no number", title.unwrap_or_default()))
+            let (title, text) = (titles.get(at), record.get(at));
+            let [title, text] = [title, text].map(Option::unwrap_or_default);
+            wrong(line, format!("{title}: `{text}` is no number"))
         })?;
-        let oil = row.oil().map_err(|what| wrong(line, what))?;
+        oil.check().map_err(|what| wrong(line, what))?;
         if all.iter().any(|known| known.name == oil.name) {
-            let what =
-                format!("{} stands in the table twice: give each oil its own name", oil.name);
+            let name = oil.name;
+            let what = format!("{name} stands in the table twice: give each oil its own name");
             return Err(wrong(line, what));
         }
         all.push(oil);
     }
     Ok(all)
-}
-
-/// Contact laws end below this Poisson ratio; the paper's effective materials go beyond 1/2.
-const BELOW: f64 = 1.0;
-
-/// A line of a table; columns that it does not have are empty.
-#[derive(Deserialize, Default)]
-#[serde(default)]
-struct OilRow {
-    name: String,
-    young_modulus_pa: Option<f64>,
-    poisson_prefactor: Option<f64>,
-    poisson_exponent: Option<f64>,
-    viscosity_prefactor_pa_s: Option<f64>,
-    viscosity_exponent: Option<f64>,
-    stiffness_prefactor: Option<f64>,
-    stiffness_exponent: Option<f64>,
-    relaxation_prefactor_s: Option<f64>,
-    relaxation_exponent: Option<f64>,
-    source: String,
-}
-
-/// A power law of two columns; its exponent is 0 where none stands.
-fn law(
-    name: &str,
-    prefactor: Option<f64>,
-    exponent: Option<f64>,
-    below: f64,
-) -> Result<Option<OilLaw>, String> {
-    let exponent = exponent.unwrap_or(0.0);
-    let positive = |value: f64| value > 0.0 && value < below && exponent.is_finite();
-    match prefactor {
-        Some(value) if !positive(value) => Err(format!(
-            "{name} is {value}, with the exponent {exponent}; expected more than 0, less than {below}"
-        )),
-        value => Ok(value.map(|prefactor| OilLaw { prefactor, exponent })),
-    }
-}
-
-impl OilRow {
-    fn oil(self) -> Result<Oil, String> {
-        if self.name.is_empty() {
-            return Err("an oil without a name".to_owned());
-        }
-        let any = |name: &str, prefactor, exponent| law(name, prefactor, exponent, f64::INFINITY);
-        let poisson = (self.poisson_prefactor, self.poisson_exponent);
-        let material = (
-            any("young_modulus_pa", self.young_modulus_pa, None)?,
-            law("poisson_prefactor", poisson.0, poisson.1, BELOW)?,
-            any(
-                "viscosity_prefactor_pa_s",
-                self.viscosity_prefactor_pa_s,
-                self.viscosity_exponent,
-            )?,
-        );
-        let contact = (
-            any("stiffness_prefactor", self.stiffness_prefactor, self.stiffness_exponent)?,
-            any("relaxation_prefactor_s", self.relaxation_prefactor_s, self.relaxation_exponent)?,
-        );
-        let description = match (material, contact) {
-            ((Some(young), Some(poisson_ratio), Some(viscosity_pa_s)), (None, None)) => {
-                Description::Material {
-                    young_modulus_pa: young.prefactor,
-                    poisson_ratio,
-                    viscosity_pa_s,
-                }
-            }
-            ((None, None, None), (Some(stiffness), Some(relaxation_s))) => {
-                Description::Contact { stiffness, relaxation_s }
-            }
-            _ => {
-                return Err(format!(
-                    "{}: expected either young_modulus_pa, poisson_prefactor and \
-                     viscosity_prefactor_pa_s, or stiffness_prefactor and relaxation_prefactor_s",
-                    self.name
-                ));
-            }
-        };
-        Ok(Oil { name: self.name, description, source: self.source })
-    }
 }

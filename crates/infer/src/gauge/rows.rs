@@ -6,7 +6,7 @@ use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::Data;
 use crate::goodness::LEAST_BY_CHANCE;
 use crate::least_squares::{Descent, Merit, run};
-use crate::linear::{combine, dot, least_squares};
+use crate::linear::{cholesky, dot, least_squares};
 use crate::{Covariance, DataRow, Fitting, InferError, Loss, Parameter, Problem, fit};
 use hertzchain_measure::signal::ChiSquare;
 use rayon::prelude::*;
@@ -43,11 +43,8 @@ pub struct Contact {
 pub struct Pair {
     /// ln K, K in N/m^{3/2}, and ln A, A in s.
     pub ln: [f64; 2],
-    /// Covariance of both from this row's measurements alone.
-    pub own: [[f64; 2]; 2],
-    /// Shifts of both by one standard error of each independent shift of the dry contacts' numbers:
-    /// common to all rows.
-    pub shared: Vec<[f64; 2]>,
+    /// Covariance of both, with the errors of the dry contacts' numbers.
+    pub covariance: [[f64; 2]; 2],
 }
 
 /// A value of which so many standard errors reach 0 is not determined, as neither K nor A can be
@@ -60,23 +57,11 @@ pub fn is_determined(value: f64, standard_error: f64) -> bool {
 }
 
 impl Pair {
-    /// Whole covariance of ln K and ln A.
-    pub fn covariance(&self) -> [[f64; 2]; 2] {
-        let mut sum = self.own;
-        for shift in &self.shared {
-            for (row, x) in sum.iter_mut().zip(shift) {
-                row.iter_mut().zip(shift).for_each(|(entry, y)| *entry += x * y);
-            }
-        }
-        sum
-    }
-
     /// K in N/m^{3/2} (or the combination) and A in s, each with its standard error.
     pub fn estimates(&self) -> [(f64, f64); 2] {
-        let covariance = self.covariance();
         [0, 1].map(|i| {
             let value = self.ln[i].exp();
-            (value, value * covariance[i][i].sqrt())
+            (value, value * self.covariance[i][i].sqrt())
         })
     }
 }
@@ -354,15 +339,16 @@ impl Gauge {
             let pairs = found.iter().zip(&fit_result.residuals);
             moves.push(pairs.map(|(a, b)| a - b).collect::<Vec<f64>>());
         }
-        let covariance = Covariance::new(problem.parameters(), &fit_result);
-        let entry = |i: usize, j: usize| {
-            let of = covariance.matrix.get(i).and_then(|row| row.get(j));
-            of.map_or(0.0, |c| c / (point[i] * point[j]))
-        };
         // What follows them, to first order.
         let rights = moves.iter().map(|change| change.iter().map(|x| -x).collect()).collect();
         let follow = least_squares(slopes.clone(), rights);
-        let of = |follow: Vec<f64>| [0, 1].map(|i| follow.get(i).copied().unwrap_or(0.0));
+        let own = Covariance::new(problem.parameters(), &fit_result).matrix;
+        let entry = |i: usize, j: usize| {
+            let own =
+                own.get(i).and_then(|row| row.get(j)).map_or(0.0, |c| c / (point[i] * point[j]));
+            let shared = follow.iter().filter_map(|of| Some(of.get(i)? * of.get(j)?));
+            own + shared.sum::<f64>()
+        };
         Ok(GaugeSolution {
             chi_square: match free {
                 Free::Both => allowing(&fit_result.residuals, &slopes, &moves),
@@ -371,8 +357,7 @@ impl Gauge {
             is_beyond: free == Free::Both && fit_result.is_bound(1),
             pair: Pair {
                 ln: point.map(f64::ln),
-                own: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
-                shared: follow.into_iter().map(of).collect(),
+                covariance: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
             },
         })
     }
@@ -408,10 +393,10 @@ impl Gauge {
 /// The smallest A, times that of the dry contacts: no liquid damps less than none by much.
 const LEAST_TIMES_DRY: f64 = 0.5;
 /// Steps in ln A, to 64 times the dry A.
-const STEPS: usize = 80;
-const STEP: f64 = 0.0607;
+const STEPS: usize = 60;
+const STEP: f64 = 0.0809;
 /// Expected fall of chi-square/2 at which K is good enough for a start.
-const ROUGH: f64 = 0.005;
+const ROUGH: f64 = 0.5;
 /// Half the step in ln K and ln A of the derivatives of a combination.
 const LN_STEP: f64 = 0.01;
 /// Chi-square above the best solution's from which another is rejected: three standard errors.
@@ -468,35 +453,27 @@ fn distinct(
     Ok(distinct)
 }
 
-/// Chi-square of residuals that independent numbers, each known to its standard error, may move: the
-/// least of |r + Σ c d|² + |c|², where each move d is what small changes of ln K and ln A leave of
-/// it.
+/// Chi-square of residuals r at a minimum that independent numbers, each known to its standard error,
+/// may move: rᵀ C⁻¹ r with C = 1 + D Dᵀ + s² S Sᵀ, D the moves and S the slopes by ln K and ln A,
+/// which make up for moves by small changes s.
 fn allowing(residuals: &[f64], slopes: &[Vec<f64>], moves: &[Vec<f64>]) -> f64 {
-    // Rows, and behind them one for each unknown, 1 in that of its own.
-    let with = |rows: &[f64], factor: f64, count: usize, own: Option<usize>| -> Vec<f64> {
-        let ends = (0..count).map(|at| if Some(at) == own { 1.0 } else { 0.0 });
-        rows.iter().map(|x| x * factor).chain(ends).collect()
+    let all = 0..residuals.len();
+    let entry = |i: usize, j: usize| {
+        let own = f64::from(u8::from(i == j));
+        let moved: f64 = moves.iter().map(|d| d[i] * d[j]).sum();
+        own + moved + SMALL * SMALL * slopes.iter().map(|s| s[i] * s[j]).sum::<f64>()
     };
-    let (pairs, dry) = (slopes.len(), moves.len());
-    let numbered = slopes.iter().enumerate();
-    let pair: Vec<Vec<f64>> = numbered.map(|(k, c)| with(c, SMALL, pairs, Some(k))).collect();
-    let rights = moves.iter().map(|d| with(d, -1.0, pairs, None)).collect();
-    let weights = least_squares(pair.clone(), rights);
-    let left = moves.iter().zip(&weights).enumerate().map(|(at, (d, weights))| {
-        let taken = combine(&pair, weights);
-        let rest: Vec<f64> = d.iter().zip(taken).map(|(d, taken)| d + taken).collect();
-        with(&rest, 1.0, dry, Some(at))
-    });
-    let left: Vec<Vec<f64>> = left.collect();
-    let own = with(residuals, 1.0, dry, None);
-    let right = own.iter().map(|x| -x).collect();
-    let Some(weights) = least_squares(left.clone(), vec![right]).pop() else {
-        return dot(&own, &own);
+    let matrix: Vec<Vec<f64>> =
+        all.clone().map(|i| all.clone().map(|j| entry(i, j)).collect()).collect();
+    let Some(lower) = cholesky(&matrix) else {
+        return dot(residuals, residuals);
     };
-    let taken = combine(&left, &weights);
-    let rest = own.iter().enumerate().map(|(at, x)| x + taken.get(at).unwrap_or(&0.0));
-    let rest: Vec<f64> = rest.collect();
-    dot(&rest, &rest)
+    let mut white: Vec<f64> = Vec::new();
+    for (row, residual) in lower.iter().zip(residuals) {
+        let at = white.len();
+        white.push((residual - dot(&row[..at], &white)) / row[at]);
+    }
+    dot(&white, &white)
 }
 
 #[cfg(test)]

@@ -66,7 +66,7 @@ impl Surrogate {
     pub const MOST_PARAMETERS: usize = polynomial::MOST_PARAMETERS;
 
     /// Largest error of a surrogate that may stand for the model, in standard errors.
-    pub const ALLOWED: f64 = 0.1;
+    const ALLOWED: f64 = 0.1;
 
     /// Around a fit, six standard errors in every direction of the covariance, by
     /// polynomials of rising degree until one is right. Speeds at which none is, where the model

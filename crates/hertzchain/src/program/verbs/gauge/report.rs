@@ -6,7 +6,7 @@ use crate::program::format::{self, digits, with_error};
 use crate::program::print::heading;
 use crate::program::words::{chi_square_text, estimate, lines, misfit, percent};
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, NEVER, Pair, SharedLaw, WetRow, is_determined};
+use hertzchain_infer::gauge::{Contact, NEVER, Pair, WetRow, is_determined};
 
 /// Everything that is to be said.
 pub(super) fn text(run_gauge: &GaugeResult) -> String {
@@ -25,10 +25,6 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
         contacts(run_gauge),
         lines(references(wet_model))
     );
-    if let Some(laws) = &run_gauge.laws {
-        text += &law("K", "N/m^1.5", &laws.stiffness);
-        text += &law("A", "s", &laws.relaxation);
-    }
     if let Some(add) = run_gauge.gauge.to_add() {
         text += &format!(
             "One number a speed determines one combination of K and A. To determine both, {add}.\n"
@@ -130,25 +126,6 @@ fn contacts(run_gauge: &GaugeResult) -> String {
     let cut = |row: &Vec<String>| row.iter().take(shown).cloned().collect::<Vec<_>>();
     let rows: Vec<Vec<String>> = rows.iter().map(cut).collect();
     format::table(&cut(&head.map(str::to_owned).to_vec()), &rows)
-}
-
-/// Reduced chi-square from which values are said to follow no power law.
-const NO_LAW: f64 = 2.0;
-
-fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
-    let prefactor = law.law.prefactor;
-    let relative = percent(law.ln_prefactor_sd);
-    let (exponent, error) = with_error(law.law.exponent, law.exponent_sd);
-    let fits = match law.reduced_chi_square > NO_LAW {
-        true => {
-            format!("; the values do not follow it (χ²/ν = {})", digits(law.reduced_chi_square, 2))
-        }
-        false => String::new(),
-    };
-    format!(
-        "{name} = {} {unit} (± {relative}) · v^({exponent} ± {error}){fits}\n",
-        digits(prefactor, 4)
-    )
 }
 
 /// What K and A take for granted.
