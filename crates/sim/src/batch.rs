@@ -4,13 +4,13 @@ use crate::calibration::Calibration;
 use crate::engine::{Control, run_plans};
 use crate::error::StudyError;
 use crate::fingerprint::{Fingerprint, Inputs};
-use crate::plan::{Plan, Solver};
+use crate::plan::Plan;
 use crate::result::Rows;
 use crate::shard::Shard;
 use crate::shot::Shot;
 use crate::stop::stopped;
 use hertzchain_chain::InstructionSet;
-use hertzchain_experiment::{Experiment, Pick, Units, Warning};
+use hertzchain_experiment::{Experiment, Method, Pick, Units, Warning};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -45,7 +45,9 @@ pub struct BatchOptions {
     /// Relative accuracy asked of times of flight.
     pub accuracy: f64,
     /// How the motion is computed.
-    pub solver: Solver,
+    pub method: Method,
+    /// Step in s of a fixed-step method; without one it is halved until the accuracy is reached.
+    pub step_s: Option<f64>,
     /// Duration of a shot in s; until it is over when `None`.
     pub duration_s: Option<f64>,
     /// Where pulses are timed.
@@ -67,7 +69,8 @@ impl BatchOptions {
         let asked = experiment.solver();
         Self {
             accuracy: asked.accuracy,
-            solver: asked.into(),
+            method: asked.method,
+            step_s: asked.step_s,
             duration_s: asked.duration_s,
             pick: experiment.pick(),
             rebound: false,
@@ -392,7 +395,8 @@ impl Batch {
         let (plan, warnings) = Plan::from_experiment(experiment, Some(speed_m_s))?;
         let plan = Plan {
             accuracy: self.options.accuracy,
-            solver: self.options.solver,
+            method: self.options.method,
+            step_s: self.options.step_s,
             duration_s: self.options.duration_s,
             pick: self.options.pick,
             rebound: self.options.rebound,
