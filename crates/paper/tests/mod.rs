@@ -1,6 +1,8 @@
 //! The paper's statements, and its rig's.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
+use hertzchain_sim::rig;
+
 mod claims;
 #[path = "../../figures/tests/covered/mod.rs"]
 mod covered;

@@ -10,7 +10,7 @@ use hertzchain_sim::{Fingerprint, Inputs};
 
 /// Where a parameter of one curve's model comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Supply {
+pub(crate) enum Supply {
     /// A parameter of the problem, by its place.
     Free(usize),
     /// A fixed value in its unit.

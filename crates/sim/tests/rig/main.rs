@@ -3,6 +3,7 @@
 
 mod amplifier;
 mod campaign;
+mod departures;
 mod forecast;
 mod instruments;
 mod poisoned;

@@ -1,5 +1,4 @@
-//! Why times of flight on a tapped chain are not those of the model's compact one:
-//! `cargo run --release -p hertzchain-rig --example departures`.
+//! Why times of flight on a tapped chain are not those of the model's compact one.
 //!
 //! The preset's rig with one thing changed at a time. Strikers have exactly the
 //! programmed speed and times are those of the true peaks, so nothing of measuring is in
@@ -7,12 +6,12 @@
 //! says of the mean load that the contacts behind the sensor bead really have.
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
+use crate::rig::instruments::true_speed_m_s;
+use crate::rig::recorder::Window;
+use crate::rig::shot::{Bench, shoot};
+use crate::rig::{Plan, Purpose, RandomStream, Series};
 use hertzchain_chain::System;
 use hertzchain_experiment::Experiment;
-use hertzchain_sim as study;
-use hertzchain_sim::rig::{
-    Bench, Plan, Purpose, RandomStream, Series, Window, shoot, true_speed_m_s,
-};
 use rayon::prelude::*;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -46,8 +45,12 @@ const ALWAYS: [(&str, f64); 4] = [
 /// Force on bead 1, which every contact bears.
 const PUSH: &str = "near_end.force";
 
-fn main() -> Outcome<()> {
-    let shots = std::env::args().nth(1).map_or(Ok(5), |text| text.parse())?;
+/// Shots of a series.
+const SHOTS: usize = 5;
+
+#[test]
+#[ignore = "prints a table in some minutes: cargo test --release -p hertzchain-sim departures -- --ignored --nocapture"]
+fn departures_of_tapped_rows_from_the_model() -> Outcome<()> {
     let paper = hertzchain_experiment::preset("paper")?;
     let plans = CHANGES.iter().map(|(_, change)| {
         let plan = paper.set(&ALWAYS)?.set(change)?;
@@ -60,7 +63,7 @@ fn main() -> Outcome<()> {
     });
     let due: Vec<(&Plan, &Series)> = due.collect();
     let done = due.par_iter().with_max_len(1);
-    let done = done.map(|(plan, series)| departures(plan, series, shots));
+    let done = done.map(|(plan, series)| departures(plan, series, SHOTS));
     let mut done = done.collect::<Outcome<Vec<Departures>>>()?.into_iter();
     println!("| rig | case | m/s | load | incident, µs | by load | reflected, µs | by load |");
     println!("|---|---|---|---|---|---|---|---|");
@@ -176,8 +179,8 @@ fn load_n(system: &System, sensor: usize) -> f64 {
 
 /// Incident and reflected time of flight in s of the compact chain.
 fn model_s(experiment: &Experiment, speed_m_s: f64) -> Outcome<[f64; 2]> {
-    let (plan, _) = study::Plan::from_experiment(experiment, Some(speed_m_s))?;
-    let shot = study::shoot(&plan.for_flights().with_accuracy(1e-8))?;
+    let (plan, _) = crate::Plan::from_experiment(experiment, Some(speed_m_s))?;
+    let shot = crate::shoot(&plan.for_flights().with_accuracy(1e-8))?;
     let flight = shot.flight.ok_or("the wave does not reach the wall")?;
     Ok([flight.incident_s, flight.reflected_s.unwrap_or(f64::NAN)])
 }
