@@ -1,6 +1,6 @@
 //! A campaign small enough for tests: 12 beads, two cases, three speeds.
 
-use crate::rig::{MeasuredShot, Plan, run_series};
+use super::rig::{MeasuredShot, Plan, run_series};
 use hertzchain_experiment::Experiment;
 
 pub const TEXT: &str = include_str!("../small.toml");
