@@ -186,7 +186,7 @@ fn study(case: &Case, seeds: Range<usize>, sampled: usize) -> Result<(), Box<dyn
     let first = CurveProblem::of_curves(models.into_iter().zip(data(0)).collect(), &[]);
     let best = fit(&first, &Fitting::default())?;
     let around = Covariance::new(first.parameters(), &best);
-    let surrogate = Surrogate::new(&first, &best, &around)?;
+    let surrogate = Surrogate::within(REACH, &first, &best, &around)?;
     let from = seeds.start;
     let one = |seed: usize| -> Result<Said, String> {
         let repeated = surrogate.with_data(data(seed));
@@ -225,6 +225,10 @@ fn moments(values: &[f64]) -> String {
     let (error, error_of_sd) = (sd / of.sqrt(), sd / (2.0 * of).sqrt());
     format!("{mean:.3} ± {error:.3}, scattering by {sd:.3} ± {error_of_sd:.3}")
 }
+
+/// Half the surrogate's box: best fits scatter about the first one's, and
+/// samples about each.
+const REACH: f64 = 10.0;
 
 /// The curve that is measured.
 fn truth(case: &Case, row: &Experiment) -> Result<Truth, Box<dyn Error>> {

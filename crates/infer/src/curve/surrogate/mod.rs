@@ -2,10 +2,12 @@
 //!
 //! A posterior needs a million curves that differ little. Near the best fit the
 //! logarithm of every time of flight is a smooth function of the parameters, which a
-//! polynomial gives to a small part of a standard error, by least squares on curves at
-//! random. How small is measured, at points between.
+//! polynomial gives to a small part of a standard error: of few parameters through
+//! curves at the nodes of a grid, of many by least squares on curves at random. How
+//! small is measured, at points between.
 
 mod ball;
+mod grid;
 mod polynomial;
 
 use super::joint::CurveProblem;
@@ -13,6 +15,7 @@ use super::model::Predicted;
 use crate::data::Data;
 use crate::problem::{ModelError, Problem, Residuals};
 use crate::{Covariance, Fit, InferError, Parameter};
+use grid::Grid;
 use hertzchain_sim::count_done;
 use polynomial::Polynomial;
 use rayon::prelude::*;
@@ -52,12 +55,29 @@ fn model_fails(error: ModelError) -> InferError {
 #[derive(Clone, Debug)]
 pub struct Surrogate {
     problem: CurveProblem,
-    polynomial: Polynomial,
+    form: Form,
     /// Numbers of the speeds whose predictions are computed.
     rough: Vec<usize>,
     /// Largest difference of any residual from the model's own, in standard
     /// errors, at points spread over what is covered.
     pub error: f64,
+}
+
+/// What curves are made of.
+#[derive(Clone, Debug)]
+enum Form {
+    Grid(Grid),
+    Polynomial(Polynomial),
+}
+
+impl Form {
+    /// The curve where it is covered.
+    fn curve(&self, point: &[f64]) -> Option<Vec<Predicted>> {
+        match self {
+            Self::Grid(grid) => grid.curve(point),
+            Self::Polynomial(polynomial) => polynomial.curve(point),
+        }
+    }
 }
 
 impl Surrogate {
@@ -68,9 +88,9 @@ impl Surrogate {
     /// Largest error of a surrogate that may stand for the model, in standard errors.
     const ALLOWED: f64 = 0.1;
 
-    /// Around a fit, six standard errors in every direction of the covariance, by
-    /// polynomials of rising degree until one is right. Speeds at which none is, where the model
-    /// jumps, are computed, if they are few.
+    /// Around a fit, six standard errors to either side. Up to four parameters have a
+    /// grid; more, or those for which a grid is too coarse, a polynomial of least
+    /// squares.
     ///
     /// # Errors
     /// See [`InferError`].
@@ -79,8 +99,53 @@ impl Surrogate {
         fit: &Fit,
         covariance: &Covariance,
     ) -> Result<Self, InferError> {
-        let accuracy = FINER * problem.model().accuracy;
-        let finer = problem.clone().with_accuracy(accuracy);
+        let few = fit.point.len() <= grid::MOST_PARAMETERS;
+        let gridded = few.then(|| Self::within(REACH, problem, fit, covariance));
+        match gridded {
+            Some(Ok(surrogate)) if surrogate.is_right() => Ok(surrogate),
+            _ => Self::by_least_squares(problem, fit, covariance),
+        }
+    }
+
+    /// Around a fit, so many standard errors to either side, on a grid: for repetitions
+    /// whose best fits scatter about this one.
+    ///
+    /// # Errors
+    /// See [`InferError`].
+    pub fn within(
+        reach: f64,
+        problem: &CurveProblem,
+        fit: &Fit,
+        covariance: &Covariance,
+    ) -> Result<Self, InferError> {
+        let finer = finer(problem);
+        let grid = Grid::within(reach, &finer, fit, covariance)?;
+        let trials = grid.trials();
+        let mut surrogate = Self {
+            problem: finer,
+            form: Form::Grid(grid),
+            rough: Vec::new(),
+            error: f64::INFINITY,
+        };
+        let exact = surrogate.problem.all_curves(&trials).into_iter();
+        let exact: Result<Vec<_>, _> = exact.collect();
+        let exact = exact.map_err(model_fails)?;
+        surrogate.error = surrogate.worst(trials.iter().zip(&exact))?;
+        Ok(surrogate)
+    }
+
+    /// Around a fit, as many standard errors in every direction of the covariance, by
+    /// polynomials of rising degree until one is right. Speeds at which none is, where the model
+    /// jumps, are computed, if they are few.
+    ///
+    /// # Errors
+    /// See [`InferError`].
+    fn by_least_squares(
+        problem: &CurveProblem,
+        fit: &Fit,
+        covariance: &Covariance,
+    ) -> Result<Self, InferError> {
+        let finer = finer(problem);
         let few = finer.all_speeds_m_s().len() / ROUGH_ONE_IN;
         let mut study = polynomial::Study::new(REACH, &finer, fit, covariance)?;
         let mut best: Option<Self> = None;
@@ -88,7 +153,7 @@ impl Surrogate {
             let rough = study.rough(&finer, &polynomial, Self::ALLOWED);
             let mut found = Self {
                 problem: finer.clone(),
-                polynomial,
+                form: Form::Polynomial(polynomial),
                 rough: if rough.len() > few { Vec::new() } else { rough },
                 error: f64::INFINITY,
             };
@@ -134,6 +199,11 @@ impl Surrogate {
     }
 }
 
+fn finer(problem: &CurveProblem) -> CurveProblem {
+    let accuracy = FINER * problem.model().accuracy;
+    problem.clone().with_accuracy(accuracy)
+}
+
 /// The middle of a parameter's range and half its width, so many standard errors
 /// to either side within bounds.
 fn side(parameter: &Parameter, value: f64, reach: f64, sd: f64) -> Result<(f64, f64), InferError> {
@@ -160,7 +230,7 @@ impl Surrogate {
         };
         let mut worst: f64 = 0.0;
         for (point, exact) in trials {
-            let mut own = self.polynomial.curve(point).ok_or(no_room())?;
+            let mut own = self.form.curve(point).ok_or(no_room())?;
             self.rough.iter().for_each(|at| own[*at] = exact[*at]);
             let (own, exact) = (residuals(&own)?, residuals(exact)?);
             let pairs = own.standardised.iter().zip(&exact.standardised);
@@ -203,7 +273,7 @@ impl Problem for Surrogate {
 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
         let curves: Vec<Option<Vec<Predicted>>> =
-            (points.par_iter()).map(|point| self.polynomial.curve(point)).collect();
+            (points.par_iter()).map(|point| self.form.curve(point)).collect();
         let chosen = |inside: bool| {
             let pairs = points.iter().zip(&curves);
             let own = pairs.filter(move |(_, curve)| curve.is_some() == inside);
