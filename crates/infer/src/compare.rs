@@ -52,7 +52,7 @@ impl Criteria {
     }
 
     /// Whether the data reject the model (p < 0.001).
-    pub fn is_rejected(&self) -> bool {
+    pub(crate) fn is_rejected(&self) -> bool {
         self.chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
     }
 }

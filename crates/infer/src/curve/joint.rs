@@ -148,7 +148,10 @@ impl CurveProblem {
     ///
     /// # Errors
     /// No parameter, one that cannot be free, or fewer numbers than unknowns.
-    pub fn with_data(&self, data: impl IntoIterator<Item = Data>) -> Result<Self, InferError> {
+    pub(crate) fn with_data(
+        &self,
+        data: impl IntoIterator<Item = Data>,
+    ) -> Result<Self, InferError> {
         let curves = self.curves.iter().zip(data).map(|(curve, data)| curve.with_data(data));
         Self::unchecked(self.parameters.clone(), curves.collect()).checked()
     }
