@@ -66,6 +66,8 @@ struct Options {
     every: u64,
     /// No row is begun after this time in s.
     seconds: u64,
+    /// Only by `shot` at 1e-6.
+    shots: bool,
     /// Print the peaks of single runs at tolerances half a decade apart instead.
     runs: bool,
     /// Print the experiment files instead.
@@ -83,6 +85,7 @@ impl Options {
             family: None,
             every: 20,
             seconds: u64::MAX,
+            shots: false,
             runs: false,
             files: false,
         };
@@ -96,6 +99,7 @@ impl Options {
                 "--every" => options.every = value()?.parse()?,
                 "--seconds" => options.seconds = value()?.parse()?,
                 "--family" => options.family = Family::named(&value()?),
+                "--shots" => options.shots = true,
                 "--runs" => options.runs = true,
                 "--files" => options.files = true,
                 count => options.count = count.parse()?,
@@ -311,7 +315,8 @@ fn row(options: &Options, at: u64) -> Option<BTreeMap<String, Tally>> {
     };
     let mut tallies = BTreeMap::<String, Tally>::new();
     let mut near = Vec::new();
-    for (sweep, accuracy) in [(false, 1e-6), (true, 1e-6), other] {
+    let asks = [(false, 1e-6), (true, 1e-6), other];
+    for (sweep, accuracy) in asks.into_iter().take(if options.shots { 1 } else { 3 }) {
         let ask = Ask { sweep, accuracy };
         let tally = tallies.entry(ask.name()).or_default();
         let Some(shot) = patiently(|| ask.run(&plan)) else {

@@ -8,21 +8,24 @@
 //! end; positions and velocities point from the striker to the wall.
 #![doc = include_str!("../README.md")]
 
-pub mod chain;
+mod chain;
 pub mod ensemble;
-pub mod instruction_set;
+mod instruction_set;
 pub mod laws;
-pub mod material;
-pub mod motion;
+mod material;
+mod motion;
 pub mod observe;
-pub mod sensor;
+mod sensor;
 pub mod settle;
-pub mod system;
+mod system;
 pub mod theory;
 pub mod wave;
 
 pub use self::{
-    chain::{Bead, Chain, ChainError, FarEnd, Gap, Initial, Push, Section, Start, Tension},
+    chain::{
+        Bead, Chain, ChainError, FarEnd, Gap, Initial, Push, STANDARD_GRAVITY_M_S2, Section, Start,
+        Tension,
+    },
     instruction_set::InstructionSet,
     material::{BeadPair, Material},
     motion::Motion,

@@ -8,7 +8,7 @@ use hertzchain_chain::*;
 use std::sync::Arc;
 
 const FRICTION: f64 = 0.05;
-const G: f64 = chain::STANDARD_GRAVITY_M_S2;
+const G: f64 = STANDARD_GRAVITY_M_S2;
 
 fn calm(system: &System, state: &mut State, slow: &SlowPhase) -> Result<Rest, SolveError> {
     settle(system, state, slow, &mut |_, _, _| {})

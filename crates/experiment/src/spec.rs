@@ -8,7 +8,7 @@ use crate::report::FileProblem;
 use crate::rig::{self, Campaign, CaseSpec, Rig};
 use crate::settings::{self, Far, Liquid, Near, Sensors, Solver};
 use crate::values::{TableView, Units};
-use hertzchain_chain::chain::STANDARD_GRAVITY_M_S2;
+use hertzchain_chain::STANDARD_GRAVITY_M_S2;
 use hertzchain_chain::laws::LawError;
 use hertzchain_chain::wave::SolveError;
 use hertzchain_chain::{ChainError, Gap, Initial, Push, Tension};

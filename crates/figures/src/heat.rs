@@ -17,14 +17,23 @@ const MISSING: u8 = 255;
 /// Values on a regular grid, to be shown as colours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
-    columns: usize,
-    rows: usize,
-    values: Vec<f64>,
-    pub(crate) x: (f64, f64),
-    pub(crate) y: (f64, f64),
-    map: ColourMap,
-    limits: Option<(f64, f64)>,
-    label: String,
+    /// Values a row.
+    pub columns: usize,
+    /// Rows, the first at the lower end of the y axis.
+    pub rows: usize,
+    /// Values row by row; missing ones are not a number.
+    pub values: Vec<f64>,
+    /// Outer edges of the first and last column on the x axis.
+    pub x_edges: (f64, f64),
+    /// Outer edges of the first and last row on the y axis.
+    pub y_edges: (f64, f64),
+    /// The colour map; sequential by default.
+    pub colours: ColourMap,
+    /// Values at the ends of the colour bar; by default those of the data,
+    /// symmetric about zero for a diverging map.
+    pub limits: Option<(f64, f64)>,
+    /// Label of the colour bar; without one there is no bar.
+    pub label: String,
 }
 
 impl HeatMap {
@@ -36,43 +45,12 @@ impl HeatMap {
             columns,
             rows,
             values: values.to_vec(),
-            x: (0.0, number(columns.max(1))),
-            y: (0.0, number(rows.max(1))),
-            map: ColourMap::Sequential,
+            x_edges: (0.0, number(columns.max(1))),
+            y_edges: (0.0, number(rows.max(1))),
+            colours: ColourMap::Sequential,
             limits: None,
             label: String::new(),
         }
-    }
-
-    /// Outer edges of the first and last column on the x axis.
-    pub fn x_edges(mut self, from: f64, to: f64) -> Self {
-        self.x = (from, to);
-        self
-    }
-
-    /// Outer edges of the first and last row on the y axis.
-    pub fn y_edges(mut self, from: f64, to: f64) -> Self {
-        self.y = (from, to);
-        self
-    }
-
-    /// Chooses the colour map; sequential by default.
-    pub fn colours(mut self, map: ColourMap) -> Self {
-        self.map = map;
-        self
-    }
-
-    /// Values at the ends of the colour bar; by default those of the data,
-    /// symmetric about zero for a diverging map.
-    pub fn limits(mut self, from: f64, to: f64) -> Self {
-        self.limits = Some((from, to));
-        self
-    }
-
-    /// Adds a colour bar with a label.
-    pub fn label(mut self, label: &str) -> Self {
-        self.label = label.into();
-        self
     }
 
     /// Lowest and highest value of the colour bar.
@@ -88,7 +66,7 @@ impl HeatMap {
         let largest = lo.abs().max(hi.abs());
         if lo > hi || largest < 1e-290 {
             (0.0, 1.0)
-        } else if self.map == ColourMap::Diverging {
+        } else if self.colours == ColourMap::Diverging {
             (-largest, largest)
         } else if hi - lo <= 1e-8 * largest {
             (lo - 0.5 * largest, hi + 0.5 * largest)
@@ -126,7 +104,7 @@ impl HeatMap {
             return;
         }
         let bar = Rect::sized(frame.x1 + GAP, frame.y0, BAR, frame.height());
-        let palette = (0..=255).map(|i| self.map.colour(1.0 - f64::from(i) / 255.0)).collect();
+        let palette = (0..=255).map(|i| self.colours.colour(1.0 - f64::from(i) / 255.0)).collect();
         let shades = Raster { width: 1, height: 256, palette, pixels: (0..=255).collect() };
         canvas.items.push(Item::Image(bar, shades));
         let (found, scale, ink) = (self.bar_ticks(bar.height()), self.scale(), Colour::BLACK);
@@ -151,15 +129,15 @@ impl HeatMap {
     /// Draws the map over the frame of `plot`.
     pub(crate) fn draw(&self, canvas: &mut Canvas, plot: &Plot) {
         let (width, height) = (count(plot.frame.width()), count(plot.frame.height()));
-        let columns = cells(&plot.x, self.x, self.columns, width);
-        let mut rows = cells(&plot.y, self.y, self.rows, height);
+        let columns = cells(&plot.x, self.x_edges, self.columns, width);
+        let mut rows = cells(&plot.y, self.y_edges, self.rows, height);
         rows.reverse();
         let (lo, hi) = self.range();
         let mut pixels = Vec::with_capacity(width * height);
         for row in &rows {
             pixels.extend(columns.iter().map(|column| level(self.strongest(column, row), lo, hi)));
         }
-        let map = Raster { width, height, palette: palette(self.map), pixels };
+        let map = Raster { width, height, palette: palette(self.colours), pixels };
         canvas.items.push(Item::Image(plot.frame, map));
     }
 

@@ -78,39 +78,17 @@ const MARGINS: f64 = 6.0;
 /// Rows are claims, columns readings, cells verdicts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct VerdictMatrix {
-    columns: Vec<String>,
-    rows: Vec<(String, Vec<ClaimVerdict>)>,
-    throughout: Vec<(ClaimVerdict, String)>,
-    notes: Vec<String>,
+    /// Names of the readings.
+    pub columns: Vec<String>,
+    /// Claims with their verdicts; cells beyond the columns are not drawn, missing ones stay empty.
+    pub rows: Vec<(String, Vec<ClaimVerdict>)>,
+    /// Claims that have one verdict in all columns, as lines of text below the rows.
+    pub throughout: Vec<(ClaimVerdict, String)>,
+    /// Remarks below everything.
+    pub notes: Vec<String>,
 }
 
 impl VerdictMatrix {
-    /// A table with the given columns and no rows.
-    pub fn new(columns: &[&str]) -> Self {
-        let columns = columns.iter().map(|c| (*c).to_owned()).collect();
-        Self { columns, ..Self::default() }
-    }
-
-    /// Adds a row; cells beyond the columns are dropped, missing ones stay empty.
-    pub fn row(mut self, claim: &str, verdicts: &[ClaimVerdict]) -> Self {
-        let cells = verdicts.iter().copied().take(self.columns.len()).collect();
-        self.rows.push((claim.into(), cells));
-        self
-    }
-
-    /// Adds claims that have one verdict in all columns, as a line of text
-    /// below the rows.
-    pub fn throughout(mut self, verdict: ClaimVerdict, claims: &str) -> Self {
-        self.throughout.push((verdict, claims.into()));
-        self
-    }
-
-    /// Adds a remark below everything.
-    pub fn note(mut self, text: &str) -> Self {
-        self.notes.push(text.into());
-        self
-    }
-
     /// The table as a figure of its own, as high as it needs to be: one column
     /// wide if that holds its cells, else two, or wider if it has very many.
     pub fn figure(self) -> Figure {
@@ -236,7 +214,7 @@ impl MatrixLayout {
         for (row, (_, cells)) in matrix.rows.iter().enumerate() {
             let height = self.row_height(row);
             self.draw_claim(canvas, row, y + 0.5 * height);
-            for (column, verdict) in cells.iter().enumerate() {
+            for (column, verdict) in cells.iter().take(matrix.columns.len()).enumerate() {
                 let x = self.cell_centre(column) - 0.5 * self.cell;
                 draw_symbol(canvas, *verdict, &Rect::sized(x, y, self.cell, height).grown(-0.5));
             }

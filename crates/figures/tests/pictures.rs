@@ -23,11 +23,17 @@ fn wave() -> Chart {
 }
 
 fn every_kind() -> Vec<Figure> {
-    let heat = HeatMap::new(3, 2, &[0.0, 1.0, 2.0, -1.0, f64::NAN, 4.0])
-        .colours(ColourMap::Diverging)
-        .label("$v$ (m/s)");
-    let table = VerdictMatrix::new(&["default", "preload 0.24 N"])
-        .row("Motor oil lengthens the ToF", &[ClaimVerdict::Holds, ClaimVerdict::NotDecidable]);
+    let heat = HeatMap {
+        colours: ColourMap::Diverging,
+        label: "$v$ (m/s)".into(),
+        ..HeatMap::new(3, 2, &[0.0, 1.0, 2.0, -1.0, f64::NAN, 4.0])
+    };
+    let verdicts = vec![ClaimVerdict::Holds, ClaimVerdict::NotDecidable];
+    let table = VerdictMatrix {
+        columns: vec!["default".into(), "preload 0.24 N".into()],
+        rows: vec![("Motor oil lengthens the ToF".into(), verdicts)],
+        ..VerdictMatrix::default()
+    };
     let rig = RigDrawing {
         beads: 40,
         sensor_bead: Some(7),
@@ -330,7 +336,7 @@ fn a_million_points_make_a_small_file() {
 
 #[test]
 fn map_colours_reach_the_png() {
-    let heat = HeatMap::new(2, 1, &[-1.0, 1.0]).colours(ColourMap::Diverging);
+    let heat = HeatMap { colours: ColourMap::Diverging, ..HeatMap::new(2, 1, &[-1.0, 1.0]) };
     let png = Figure::single_column(60.0)
         .panel(Chart::new("x", "y").heat(heat))
         .png(150.0)
@@ -387,7 +393,7 @@ proptest! {
     fn maps_of_any_numbers_stay_on_the_page(
         values in numbers(), columns in 0_usize..9, rows in 0_usize..9, edges in (number(), number()),
     ) {
-        let heat = HeatMap::new(columns, rows, &values).x_edges(edges.0, edges.1).label("value");
+        let heat = HeatMap { x_edges: edges, label: "value".into(), ..HeatMap::new(columns, rows, &values) };
         check(&Figure::single_column(60.0).panel(Chart::new("x", "y").heat(heat)).svg_outlined());
     }
 
@@ -430,8 +436,10 @@ proptest! {
         columns in prop::collection::vec("[ -~]{0,40}", 0..50), claims in prop::collection::vec("[ -~]{0,160}", 0..30),
     ) {
         let names: Vec<&str> = columns.iter().map(String::as_str).collect();
-        let row = |t: VerdictMatrix, c: &String| t.row(c, &[ClaimVerdict::Fails, ClaimVerdict::InPart, ClaimVerdict::Holds]);
-        let figure = claims.iter().fold(VerdictMatrix::new(&names), row).figure();
+        let cells = [ClaimVerdict::Fails, ClaimVerdict::InPart, ClaimVerdict::Holds];
+        let rows = claims.iter().map(|c| (c.clone(), cells.to_vec())).collect();
+        let columns = names.iter().map(|name| (*name).into()).collect();
+        let figure = VerdictMatrix { columns, rows, ..VerdictMatrix::default() }.figure();
         check(&figure.svg_outlined());
         check_legible(&figure.svg());
     }

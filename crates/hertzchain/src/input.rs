@@ -124,26 +124,24 @@ pub(crate) fn adjust(how: &How, plan: &mut Plan) {
     if let Some(pick) = how.pick {
         plan.pick = match pick {
             Pick::Peak => study::Pick::Peak,
-            Pick::Flank10 => study::Pick::Flank(0.1),
-            Pick::Flank50 => study::Pick::Flank(0.5),
+            Pick::Flank10 => study::Pick::Flank10,
+            Pick::Flank50 => study::Pick::Flank50,
             Pick::CrossCorrelation => study::Pick::CrossCorrelation,
         };
     }
-    plan.solver = match (how.solver, plan.solver) {
-        (Some(Solver::Adaptive), _) => study::Solver::Adaptive,
-        (Some(Solver::Rk4), _) => study::Solver::Rk4 { step_s: step },
-        (Some(Solver::Verlet), _) => study::Solver::Verlet { step_s: step },
-        (None, study::Solver::Rk4 { step_s }) => study::Solver::Rk4 { step_s: step.or(step_s) },
-        (None, study::Solver::Verlet { step_s }) => {
-            study::Solver::Verlet { step_s: step.or(step_s) }
-        }
-        (None, study::Solver::Adaptive) => study::Solver::Adaptive,
+    // A step in the file is that of the file's solver.
+    plan.step_s = if how.solver.is_some() { step } else { step.or(plan.step_s) };
+    plan.method = match how.solver {
+        Some(Solver::Adaptive) => study::Method::Adaptive,
+        Some(Solver::Rk4) => study::Method::Rk4,
+        Some(Solver::Verlet) => study::Method::Verlet,
+        None => plan.method,
     };
 }
 
 /// Refuses a step for a solver that chooses its own, and a duration without end.
 pub(crate) fn check_effort(how: &How, plan: &Plan, units: Units) -> Result<(), Failure> {
-    if how.step.is_some() && plan.solver == study::Solver::Adaptive {
+    if how.step.is_some() && plan.method == study::Method::Adaptive {
         return Err(Failure::User(
             "the adaptive solver chooses its own steps; --step needs --solver rk4 or verlet".into(),
         ));

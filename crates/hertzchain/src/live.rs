@@ -91,7 +91,7 @@ impl LiveMeasurement {
     }
 
     /// Whether all recordings that the last update has seen are measured.
-    pub fn is_complete(&self) -> bool {
+    pub(crate) fn is_complete(&self) -> bool {
         self.seen.keys().all(|file| self.measured.contains_key(file))
     }
 

@@ -36,7 +36,8 @@ pub fn batch(
     let plan = plan(experiment, options)?;
     let options = BatchOptions {
         accuracy: plan.accuracy,
-        solver: plan.solver,
+        method: plan.method,
+        step_s: plan.step_s,
         duration_s: plan.duration_s,
         pick: plan.pick,
         rebound: options.rebound,

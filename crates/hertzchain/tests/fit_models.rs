@@ -89,10 +89,7 @@ fn of_models_that_do_not_follow_the_data_none_is_favoured() {
     let data = curve(&folder, "dry");
     let fit = ["fit", &data, "-p", "hertz", "--free", "Y", "--against", "hertz-viscoelastic=eta"];
     let report = text(&with_errors(&fit));
-    assert!(
-        report.contains("None of these models follows the data, and none is favoured"),
-        "{report}"
-    );
+    assert!(report.contains("No model follows the data"), "{report}");
     let found = json(&with_errors(&[&fit[..], &["--json"]].concat()));
     assert!(found["comparison"]["favoured"].is_null());
     for model in found["comparison"]["models"].as_array().unwrap() {

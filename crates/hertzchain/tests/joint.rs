@@ -32,7 +32,7 @@ fn a_push_that_the_fit_advises_determines_what_one_table_leaves_open() {
     };
     let alone = fit(&[]);
     let advised = alone["would_separate"].to_string();
-    assert!(advised.contains("a push of 0.24 N on bead 1"), "{advised}");
+    assert!(advised.contains("pushed with 0.24 N"), "{advised}");
     let also = format!("{other}={pushed}");
     let out = folder.join("both");
     let both = fit(&["--also", &also, "-o", out.to_str().unwrap()]);

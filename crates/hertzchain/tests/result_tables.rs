@@ -1,6 +1,6 @@
 //! What fit, gauge and design write: tables that agree with the JSON.
 
-use crate::common::{curve, folder, json, run, with_errors};
+use crate::common::{curve, folder, json, with_errors};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -187,8 +187,6 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         holds(&run_gauge, "oils.csv", column, &found["oils"], pointer);
     }
     holds(&run_gauge, "dry.csv", "standard_error", &found["dry"], "/standard_error");
-    let laws = Value::from(vec![found["stiffness_law"].clone(), found["relaxation_law"].clone()]);
-    holds(&run_gauge, "laws.csv", "exponent_error", &laws, "/exponent_error");
     let (titles, pairs) = table(&run_gauge, "contacts.csv");
     let taken = titles.iter().position(|title| title == "taken").unwrap();
     let taken: Vec<_> = pairs.iter().filter(|line| line[taken] == "true").collect();
@@ -223,23 +221,4 @@ fn tables_of_a_gauge_and_a_design_agree_with_their_json() {
         holds(&run_design, name, "B_error (kg s/m^2)", &found[key], "/standard_errors/1");
     }
     holds(&run_design, "now.csv", "standard_error", &found["standard_errors_now"], "");
-}
-
-#[test]
-fn a_stated_form_tells_both_laws_from_incident_times() {
-    let folder = folder("form");
-    let (dry, pump) = (curve(&folder, "dry"), curve(&folder, "pump"));
-    let out = folder.join("out");
-    let gauge = ["gauge", &pump, "--dry", &dry, "--use", "incident", "--form", "power"];
-    let found =
-        json(&with_errors(&[&gauge[..], &["--json", "-o", out.to_str().unwrap()]].concat()));
-    assert_eq!(found["to_add"], Value::Null);
-    let form = &found["form"];
-    holds(&out, "form-contacts.csv", "stiffness (N/m^1.5)", &form["contacts"], "/stiffness/value");
-    let laws = Value::from(vec![form["stiffness"].clone(), form["relaxation_time_s"].clone()]);
-    holds(&out, "form.csv", "exponent", &laws, "/exponent");
-    holds(&out, "form.csv", "prefactor_relative_error", &laws, "/prefactor_relative_error");
-    assert!(out.join("contacts.png").exists());
-    let text = String::from_utf8(run(&with_errors(&gauge)).stdout).unwrap();
-    assert!(text.contains("as power laws of speed"), "{text}");
 }

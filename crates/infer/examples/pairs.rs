@@ -102,7 +102,7 @@ impl Counts {
 
 /// How far ln K and ln A are from the true ones, in the pair's own errors.
 fn pulls(pair: &Pair, exact: [f64; 2]) -> [f64; 2] {
-    let covariance = pair.covariance();
+    let covariance = pair.covariance;
     [0, 1].map(|of| (pair.ln[of] - exact[of].ln()) / covariance[of][of].sqrt())
 }
 
@@ -166,7 +166,7 @@ fn counted(
     let gauge = gauge.map_err(|error| format!("seed {seed}: {error}"))?;
     let rows = gauge.rows();
     let of = |row: &WetRow| {
-        let (k, a) = case.oil.contact(gauge.wet_radius_m(), row.speed_m_s);
+        let (k, a) = case.oil.contact(gauge.radius_m, row.speed_m_s);
         let counts = Counts::of(row, [k, a]);
         if counts.beside + counts.wrong_only + counts.wrong_smooth + counts.none > 0 {
             eprintln!(

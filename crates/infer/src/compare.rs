@@ -52,7 +52,7 @@ impl Criteria {
     }
 
     /// Whether the data reject the model (p < 0.001).
-    pub fn is_rejected(&self) -> bool {
+    pub(crate) fn is_rejected(&self) -> bool {
         self.chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
     }
 }
@@ -89,9 +89,6 @@ pub struct Comparison {
 /// support left, after [BurnhamAnderson2002].
 const UNDECIDED: f64 = 2.0;
 const NO_SUPPORT: f64 = 10.0;
-
-/// Odds beyond are not reported: no error is so exactly normal.
-const MOST_ODDS: f64 = 1e9;
 
 /// Compares models of the same data.
 ///
@@ -153,57 +150,38 @@ fn sentence(models: &[Compared<'_>], criteria: &[Criteria], order: &[usize]) -> 
     let (first, next) = (models[best].name, models[second].name);
     if let (true, Some(found)) = (criteria[best].is_rejected(), criteria[best].chi_square) {
         return format!(
-            "None of these models follows the data, and none is favoured: {first}, the nearest, has chi-square {:.4} with \
-             {} degrees of freedom (p = {:.1e}). Look for what all of them leave out, or at the data's errors.",
+            "No model follows the data: {first}, the nearest, has chi-square {:.4} with {} degrees of freedom (p = {:.1e}).",
             found.value, found.freedom, found.probability
         );
     }
     let above = criteria[second].aicc - criteria[best].aicc;
-    let odds = (0.5 * above).exp();
     let support = match above {
-        above if above < UNDECIDED => {
-            format!(
-                "The data do not decide between {first} and {next} (AICc differs by {above:.1})"
-            )
+        above if above < UNDECIDED => format!("The data do not decide between {first} and {next}"),
+        above if above < NO_SUPPORT => format!("The data favour {first} over {next}"),
+        above if above.is_finite() => {
+            format!("The data support {first} alone: {next}, the next, is rejected")
         }
-        above if above < NO_SUPPORT => format!(
-            "The data favour {first}: {next}, the next, is {odds:.0} times less supported (AICc higher by {above:.1})"
-        ),
-        above if above.is_finite() => format!(
-            "The data support {first} alone: {next}, the next, is rejected (AICc higher by {above:.1}, {})",
-            match odds < MOST_ODDS {
-                true => format!("odds of 1 to {odds:.1e}"),
-                false => format!("odds below 1 to {MOST_ODDS:.0e}"),
-            }
-        ),
         _ => format!("The data support {first}; {next} has too many parameters for them"),
     };
-    let schwarz = match criteria[second].bic - criteria[best].bic {
-        bic if bic < 0.0 => format!("; BIC prefers {next}, by {:.1}", -bic),
-        bic => format!("; BIC agrees, by {bic:.1}"),
-    };
-    support + &schwarz + &predicted(models, best, second) + "."
+    let bic = criteria[second].bic - criteria[best].bic;
+    let scores = scores(models, best, second);
+    format!("{support} ({next} less {first}: AICc {above:+.1}, BIC {bic:+.1}{scores}).")
 }
 
-/// What cross-validation says of two models, by the differences row by row.
-fn predicted(models: &[Compared<'_>], best: usize, second: usize) -> String {
+/// Difference of two models' cross-validated scores, mean of the differences row by row.
+fn scores(models: &[Compared<'_>], best: usize, second: usize) -> String {
     let rows = |i: usize| models[i].cross_validation.map(|c| &c.rows);
-    let (Some(first), Some(next)) = (rows(best), rows(second)) else {
-        return match models.iter().any(|model| model.cross_validation.is_some()) {
-            true => "; too few speeds for cross-validation of both".to_owned(),
-            false => String::new(),
-        };
-    };
-    let differences: Vec<f64> = next.iter().zip(first).map(|(b, a)| b - a).collect();
-    let (mean, error) = mean_and_error(&differences);
-    let verdict = match mean / error {
-        z if z > 2.0 => "left out, points are foretold better by it",
-        z if z < -2.0 => "but points left out are foretold worse by it",
-        _ => "points left out are foretold about equally well by both",
-    };
-    format!(
-        "; {verdict} (the cross-validated score r² + 2 ln σ, mean of all numbers, differs by {mean:.2} ± {error:.2})"
-    )
+    match (rows(best), rows(second)) {
+        (Some(first), Some(next)) => {
+            let differences: Vec<f64> = next.iter().zip(first).map(|(b, a)| b - a).collect();
+            let (mean, error) = mean_and_error(&differences);
+            format!(", cross-validated score r² + 2 ln σ {mean:+.2} ± {error:.2}")
+        }
+        _ if models.iter().any(|model| model.cross_validation.is_some()) => {
+            ", too few speeds for cross-validation".to_owned()
+        }
+        _ => String::new(),
+    }
 }
 
 /// Which rows are left out together.

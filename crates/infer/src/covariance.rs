@@ -30,7 +30,7 @@ pub struct Covariance {
     pub loss_factor: f64,
     /// Resolved directions, each as long as its standard error: the matrix is the sum of their
     /// dyads.
-    axes: Vec<Vec<f64>>,
+    pub(crate) axes: Vec<Vec<f64>>,
 }
 
 /// Component of an unresolved direction, of unit columns, that leaves a parameter undetermined.

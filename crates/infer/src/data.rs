@@ -95,7 +95,7 @@ impl Freedom {
 /// For one error (h = 1) it is exact: ⟨χ²_ν⁻¹⟩ = 1/(ν − 2) and ⟨χ²_ν⁻²⟩ = 1/((ν − 2)(ν − 4)) make it
 /// √(ν/(ν − 4)). For several in one sum it is the same with the degrees of freedom of Welch and
 /// Satterthwaite, (Σ v)²/Σ (v²/ν) [Satterthwaite1946].
-pub fn widening(share: f64, freedom: f64) -> f64 {
+pub(crate) fn widening(share: f64, freedom: f64) -> f64 {
     match freedom >= FEWEST {
         true => (1.0 - 4.0 * share / freedom).sqrt().recip(),
         false => 1.0,

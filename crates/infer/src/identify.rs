@@ -140,11 +140,6 @@ pub(crate) struct Determined {
 
 impl Scaled {
     pub(crate) fn of(parameters: &[Parameter], jacobian: &Jacobian) -> Self {
-        Self::with_doubt(parameters, jacobian, EXTRAPOLATED)
-    }
-
-    /// The same, columns wrong by so large a share of the disagreement of both step sizes.
-    pub(crate) fn with_doubt(parameters: &[Parameter], jacobian: &Jacobian, share: f64) -> Self {
         let column = |(column, of): (&Vec<f64>, &Parameter)| -> Vec<f64> {
             let data = column.iter().take(jacobian.data_rows);
             data.map(|x| x * of.scale).collect()
@@ -152,7 +147,7 @@ impl Scaled {
         let pairs = jacobian.columns.iter().zip(parameters);
         let columns: Vec<Vec<f64>> = pairs.map(column).collect();
         let errors = (columns.iter().zip(&jacobian.disagreement))
-            .map(|(column, d)| norm(column) * (ROUNDING + share * d))
+            .map(|(column, d)| norm(column) * (ROUNDING + EXTRAPOLATED * d))
             .collect();
         Self { columns, errors }
     }

@@ -24,15 +24,14 @@ pub use self::{
     covariance::Covariance,
     curve::{
         Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Kind, MeasuredCurve, Model,
-        Predicted, Prospect, Speeds, Supply, Surrogate, USUAL_PRELOAD_N, Way, ways,
+        Predicted, Prospect, Speeds, Surrogate, Way, ways,
     },
     data::{
-        Data, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, widening,
-        wrong_speed,
+        Data, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, wrong_speed,
     },
     design::{Aim, Candidate, Design, Expected, design},
     error::InferError,
-    free::{Form, FreeNumber, FreeNumbers, SHORT_NAMES, same_number},
+    free::{Form, FreeNumber, FreeNumbers, same_number},
     goodness::{Goodness, Largest, Runs, largest_residual, runs},
     identify::{Identifiability, UnidentifiableDirection},
     least_squares::{Binding, Ending, Fit, Fitting, Jacobian, Loss, Started, fit},
@@ -44,6 +43,6 @@ pub use self::{
     pulses::{PulseProblem, Pulses, Respond},
     sampler::{
         Autocorrelation, Chain, Diagnosis, Posterior, Requirements, Sampling, Shortfall,
-        Unconverged, autocorrelation_time, split_r_hat,
+        Unconverged,
     },
 };

@@ -123,7 +123,7 @@ impl Parameter {
     }
 
     /// The same parameter with a prior.
-    pub fn with_prior(self, prior: Prior) -> Self {
+    pub(crate) fn with_prior(self, prior: Prior) -> Self {
         Self { prior, ..self }
     }
 

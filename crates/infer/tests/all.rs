@@ -8,7 +8,6 @@ mod curve;
 mod data;
 mod free;
 mod gauge;
-mod gauge_form;
 mod goodness;
 mod joint;
 mod linear;

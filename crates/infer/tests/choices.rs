@@ -132,7 +132,7 @@ fn the_right_model_is_supported_and_the_sentence_says_by_how_much() {
     assert!(found.sentence.contains("parabola"), "{}", found.sentence);
     let two = compare(&models[1..3]).unwrap();
     assert!(two.sentence.starts_with("The data support parabola alone: line"), "{}", two.sentence);
-    assert!(two.sentence.contains("foretold better by it"), "{}", two.sentence);
+    assert!(two.sentence.contains("cross-validated score r² + 2 ln σ +"), "{}", two.sentence);
     let Criteria { aic, aicc, bic, deviance, .. } = found.criteria[2];
     assert_eq!(aic, deviance + 6.0);
     // 2 · 3 · 4/11 and 3 ln 15; rounding.

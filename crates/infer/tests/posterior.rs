@@ -1,14 +1,12 @@
 //! The sampler against distributions that are known.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use crate::toys::{Curve, decay, normals, regression, spaced, straight};
+use crate::toys::{Curve, decay, regression, spaced, straight};
 use hertzchain_infer::{
-    Chain, Covariance, Fit, Fitting, InferError, ModelError, Parameter, Prior, Problem,
-    Requirements, Residuals, Sampling, autocorrelation_time, fit, split_r_hat,
+    Chain, Covariance, Fit, Fitting, InferError, ModelError, Parameter, Posterior, Prior, Problem,
+    Requirements, Residuals, Sampling, fit,
 };
 use hertzchain_measure::signal::coverage;
-use hertzchain_sim::Stop;
-use std::thread::scope;
 
 fn started(problem: &dyn Problem, how: &Sampling) -> (Fit, Covariance, Chain) {
     let found = fit(problem, &Fitting::default()).unwrap();
@@ -24,6 +22,11 @@ fn line() -> Line {
     Curve::drawn(free, &spaced(0.0, 4.0, 12), 0.3, &[5.0, -2.0], 1, straight)
 }
 
+/// Standard error of a mean from a finite chain: σ/√(effective samples).
+fn mean_error(of: &Posterior, parameter: usize) -> f64 {
+    of.sd(parameter) / of.diagnoses[parameter].effective.sqrt()
+}
+
 #[test]
 fn posterior_of_a_line_has_the_mean_and_covariance_of_linear_regression() {
     for differential_share in [0.0, 0.5, 1.0] {
@@ -35,7 +38,7 @@ fn posterior_of_a_line_has_the_mean_and_covariance_of_linear_regression() {
         let (best, covariance) = regression(&data.x, &data.y, 0.3);
         for i in 0..2 {
             // Four standard errors of a mean of so many effective samples.
-            let error = found.mean_error(i);
+            let error = mean_error(&found, i);
             assert!((found.mean[i] - best[i]).abs() < 4.0 * error, "{differential_share}");
             let effective = found.diagnoses[i].effective;
             for j in 0..2 {
@@ -70,7 +73,7 @@ fn posterior_of_a_bent_valley_is_the_transformed_normal() {
     chain.advance(&data, 10_000).unwrap();
     let found = chain.posterior(&Requirements::default()).unwrap();
     // Mean 1 + 0.09 and variance 2·0.09² + 4·0.09 + 0.05², exactly.
-    assert!((found.mean[1] - 1.09).abs() < 4.0 * found.mean_error(1));
+    assert!((found.mean[1] - 1.09).abs() < 4.0 * mean_error(&found, 1));
     let variance = 2.0 * 0.09 * 0.09 + 4.0 * 0.09 + 0.0025;
     // Heavier tail than a normal's: kurtosis below 4, √(3/n).
     let effective = found.diagnoses[1].effective;
@@ -103,7 +106,7 @@ fn bounds_and_log_normal_priors_shape_the_posterior() {
     let upper = found.quantile(0, 0.841_344_7).ln() - 2.0_f64.ln();
     assert!((upper - 0.5).abs() < 4.0 * 0.76 / root(0), "{upper}");
     // b is uniform.
-    assert!((found.mean[1] - 0.5).abs() < 4.0 * found.mean_error(1));
+    assert!((found.mean[1] - 0.5).abs() < 4.0 * mean_error(&found, 1));
     assert!((found.covariance[1][1] - 1.0 / 12.0).abs() < 4.0 * 0.0745 / root(1));
     let [low, high] = found.interval(1, 1.0);
     assert!(low >= 0.0 && high <= 1.0);
@@ -132,62 +135,6 @@ fn posterior_intervals_hold_the_truth_as_often_as_they_say() {
         let off = (found.share - found.expected) / found.chance;
         assert!(off.abs() < 3.0, "{:.3} of {:.3}", found.share, found.expected);
     }
-}
-
-#[test]
-fn autocorrelation_time_of_a_markov_chain_is_the_closed_form() {
-    // x ← φ x + noise forgets with ρ(t) = φᵗ: τ = (1 + φ)/(1 − φ).
-    for (seed, phi) in [(1_u64, 0.5_f64), (2, 0.9), (3, 0.0)] {
-        let chains: Vec<Vec<f64>> = (0..20)
-            .map(|chain| {
-                let noise = normals(100 * seed + chain, 5000);
-                let width = (1.0 - phi * phi).sqrt();
-                let mut x = noise[0];
-                let step = |e: &f64| {
-                    x = phi * x + width * e;
-                    x
-                };
-                noise[1..].iter().map(step).collect()
-            })
-            .collect();
-        let found = autocorrelation_time(&chains);
-        let expected = (1.0 + phi) / (1.0 - phi);
-        // Sokal: relative error √(2 (2 window + 1)/n) with a window of 5 τ;
-        // the window cuts off e⁻¹⁰ of the sum.
-        let error = (2.0 * (10.0 * expected + 1.0) / 1e5).sqrt();
-        assert!(found.resolved);
-        assert!((found.time / expected - 1.0).abs() < 4.0 * error, "{phi} {}", found.time);
-        // Independent of where walkers are: chains agree.
-        assert!(split_r_hat(&chains) < (1.0 + 2.0 * expected / 2500.0).sqrt());
-    }
-}
-
-#[test]
-fn chains_at_different_places_are_found_out() {
-    let apart: Vec<Vec<f64>> = (0..4)
-        .map(|chain| normals(chain, 1000).iter().map(|x| x + chain as f64).collect())
-        .collect();
-    // Means 0 to 3: B/W = 10/7 of eight halves; chance a few percent.
-    let expected = (1.0 + 10.0 / 7.0_f64).sqrt();
-    assert!((split_r_hat(&apart) / expected - 1.0).abs() < 0.1);
-    // Not forgotten within the chains.
-    assert!(!autocorrelation_time(&apart).resolved);
-    assert!(split_r_hat(&[vec![1.0, 2.0]]).is_nan());
-}
-
-#[test]
-fn whoever_is_asked_to_stop_waits_for_no_autocorrelation_time() {
-    let chains = [normals(1, 2000), normals(2, 2000)];
-    assert!(autocorrelation_time(&chains).resolved);
-    let stop = Stop::default();
-    stop.ask();
-    let stopped = || {
-        stop.clone().adopt();
-        autocorrelation_time(&chains)
-    };
-    let found = scope(|scope| scope.spawn(stopped).join()).unwrap();
-    // Not one lag was added to the first.
-    assert!(!found.resolved && found.time == 1.0);
 }
 
 #[test]
@@ -326,7 +273,7 @@ fn walkers_start_inside_bounds_even_where_a_bound_binds() {
     // The share of a normal beyond z, from the share within ± z.
     let beyond = 0.5 * (1.0 - coverage(&[0.0], z).unwrap().expected);
     let mean = best[1] + sd * density / beyond;
-    assert!((posterior.mean[1] - mean).abs() < 4.0 * posterior.mean_error(1));
+    assert!((posterior.mean[1] - mean).abs() < 4.0 * mean_error(&posterior, 1));
 }
 
 #[test]

@@ -69,7 +69,8 @@ fn a_prior_keeps_its_own_error_among_outliers() {
         let (_, free) = fit_result(&data, HUBER);
         assert!(free.loss_factor >= 1.0);
         let known = Parameter::new("b", "m/s", -2.0);
-        data.parameters[1] = known.with_prior(Prior::Normal { mean: -2.0, sd: prior_sd });
+        let prior = Prior::Normal { mean: -2.0, sd: prior_sd };
+        data.parameters[1] = Parameter { prior, ..known };
         let (_, held) = fit_result(&data, HUBER);
         let (_, plain) = fit_result(&data, Loss::Squares);
         // The data's own error, some 0.05, determines next to nothing beside it: 2 (1e-3/0.05)².

@@ -2,7 +2,7 @@
 
 use crate::toys::{Curve, normals, spaced, straight};
 use hertzchain_infer::{
-    Covariance, Data, Defaults, Fitting, InferError, Parameter, Scatter, Selection, fit, widening,
+    Covariance, Data, Defaults, Fitting, InferError, Parameter, Scatter, Selection, fit,
 };
 use hertzchain_measure::signal::coverage;
 
@@ -30,7 +30,8 @@ fn measured(seed: u64) -> Line {
 
 #[test]
 fn intervals_hold_the_truth_where_errors_of_twenty_shots_are_widened_and_not_else() {
-    let widened = widening(1.0, (SHOTS - 1) as f64);
+    // √(ν/(ν − 4)).
+    let widened = (1.0 - 4.0 / (SHOTS - 1) as f64).sqrt().recip();
     let pulls = (0..SETS).map(|seed| {
         let line = measured(seed);
         let found = fit(&line, &Fitting::default()).unwrap();

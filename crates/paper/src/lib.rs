@@ -6,3 +6,7 @@ pub mod figures;
 pub mod readings;
 pub mod reproduce;
 pub mod rig_claims;
+
+#[cfg(test)]
+#[path = "../tests/mod.rs"]
+mod tests;

@@ -1,13 +1,14 @@
 //! The paper's figures from a whole, coarse reproduction.
 
-use crate::covered::covered;
-use crate::type_size::smallest_type;
+use super::Silent;
+use super::covered::covered;
+use super::type_size::smallest_type;
+use crate::claims::{Claim, ClaimVerdict, claims};
+use crate::figures;
+use crate::readings::{ReadingRow, ReadingScan};
+use crate::reproduce::{PROVENANCE, ReproduceOptions, Reproduction, reproduce};
 use hertzchain_experiment::Reading;
 use hertzchain_figures::Figure;
-use hertzchain_paper::claims::{Claim, ClaimVerdict, claims};
-use hertzchain_paper::figures;
-use hertzchain_paper::readings::{ReadingRow, ReadingScan};
-use hertzchain_paper::reproduce::{PROVENANCE, ReproduceOptions, Reproduction, Silent, reproduce};
 use std::collections::BTreeSet;
 
 const TABLES: [&str; 8] = [

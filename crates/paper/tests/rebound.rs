@@ -1,7 +1,7 @@
 //! One end of a shot: the striker's rebound is the same wherever it is asked for.
 
+use crate::reproduce::{CASES, Cases, Effort, Gathering, gather};
 use hertzchain_experiment::{Experiment, Reading, preset};
-use hertzchain_paper::reproduce::{CASES, Cases, Effort, Gathering, gather};
 use hertzchain_sim::{Batch, BatchOptions, Column, Plan, Shard, Shot, shoot};
 
 fn plan(experiment: &Experiment, speed_m_s: f64, accuracy: f64) -> Plan {

@@ -1,13 +1,13 @@
 //! The paper's chains in the default reading, and what rounding does to them.
 
+use super::Silent;
+use crate::claims::{ClaimVerdict, Evidence, ShotPoint, TofBranch, claims};
+use crate::readings::{DryPoisson, rounding::Draw, scan};
+use crate::reproduce::tables::{oils_csv, tof_csv};
+use crate::reproduce::{Cases, SPEEDS_M_S};
+use crate::reproduce::{Effort, Gathering, ReproduceOptions, gather};
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::{Reading, preset};
-use hertzchain_paper::claims::{ClaimVerdict, Evidence, ShotPoint, TofBranch, claims};
-use hertzchain_paper::readings::{Draw, DryPoisson, scan};
-use hertzchain_paper::reproduce::{Cases, SPEEDS_M_S};
-use hertzchain_paper::reproduce::{
-    Effort, Gathering, ReproduceOptions, Silent, gather, oils_csv, tof_csv,
-};
 use hertzchain_sim::{Plan, shoot};
 
 fn gathered(speeds_m_s: &[f64], accuracy: f64, effort: Effort<'_>) -> Evidence {

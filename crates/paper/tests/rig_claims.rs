@@ -1,14 +1,14 @@
 //! Verdicts on the rig follow from numbers.
 
-use crate::small::{TEXT, experiment};
-use hertzchain_chain::settle::State;
-use hertzchain_experiment::{Experiment, preset};
-use hertzchain_paper::claims::{ClaimFinding, ClaimVerdict, Needs};
-use hertzchain_paper::reproduce::Silent;
-use hertzchain_paper::rig_claims::{
+use super::Silent;
+use super::small::{TEXT, experiment};
+use crate::claims::{ClaimFinding, ClaimVerdict, Needs};
+use crate::rig_claims::{
     FACTORS, Observed, RigClaims, RigDesign, RigEvidence, SpeedSeries, TriedRig, claims, observe,
     series_csv, typical,
 };
+use hertzchain_chain::settle::State;
+use hertzchain_experiment::{Experiment, preset};
 use hertzchain_sim::rig::Shot;
 
 /// Standard deviation of these is 1.

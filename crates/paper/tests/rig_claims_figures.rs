@@ -1,9 +1,9 @@
 //! Figures of the claims about the rig.
 
+use super::Silent;
+use crate::figures::rig_figures;
+use crate::rig_claims::{RigClaims, RigDesign, TriedRig, observe};
 use hertzchain_experiment::Experiment;
-use hertzchain_paper::figures::rig_figures;
-use hertzchain_paper::reproduce::Silent;
-use hertzchain_paper::rig_claims::{RigClaims, RigDesign, TriedRig, observe};
 
 /// Lines, ticks and markers: a path may have many.
 fn marks(svg: &str) -> usize {

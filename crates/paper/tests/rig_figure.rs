@@ -1,14 +1,14 @@
 //! The drawing of the rig says what the experiment file says, and nothing else.
 
+use crate::figures;
 use hertzchain_experiment::Experiment;
-use hertzchain_paper::figures;
 
 const MOTOR: &str = include_str!("../../../experiments/motor.toml");
 
 /// Every text of the drawing of a file, lines of a label joined.
 fn texts(file: &str) -> String {
     let experiment = Experiment::from_text("test.toml", file).unwrap();
-    let svg = figures::rig(&experiment).unwrap().figure().svg();
+    let svg = figures::rig::rig(&experiment).unwrap().figure().svg();
     let document = roxmltree::Document::parse(&svg).unwrap();
     let labels = document.descendants().filter_map(|n| n.attribute("aria-label"));
     let joined: Vec<&str> = labels.collect();

@@ -1,8 +1,8 @@
 //! Force laws written in Python, through the interface of all laws.
 
 use hertzchain::failure::Failure;
+use hertzchain_chain::BeadPair;
 use hertzchain_chain::laws::{Closed, Columns, Contacts, Law, LawError, LawInfo, Nature};
-use hertzchain_chain::material::BeadPair;
 use hertzchain_chain::{Chain, InstructionSet, Section};
 use hertzchain_sim::Stop;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};

@@ -1,10 +1,11 @@
 //! From the accuracy that is asked to a solver that delivers it.
 
 use crate::duration::has_wall;
-use crate::plan::{Pick, Plan, Solver};
+use crate::plan::Plan;
 use hertzchain_chain::ensemble::Precision;
 use hertzchain_chain::wave::Method;
 use hertzchain_chain::{Start, System, Tension};
+use hertzchain_experiment::{self as experiment, Pick};
 
 /// Tightest tolerance per step: below it rounding, not the step, decides.
 pub(crate) const TIGHTEST: f64 = 1e-13;
@@ -188,10 +189,10 @@ pub(crate) fn first_step_s(system: &System) -> f64 {
     FIRST_STEP * system.scales().time_s
 }
 
-pub(crate) fn fixed(solver: Solver, step_s: f64) -> Method {
-    match solver {
-        Solver::Verlet { .. } => Method::verlet(step_s),
-        Solver::Rk4 { .. } | Solver::Adaptive => Method::rk4(step_s),
+pub(crate) fn fixed(method: experiment::Method, step_s: f64) -> Method {
+    match method {
+        experiment::Method::Verlet => Method::verlet(step_s),
+        experiment::Method::Rk4 | experiment::Method::Adaptive => Method::rk4(step_s),
     }
 }
 

@@ -4,21 +4,19 @@ use crate::calibration::Calibration;
 use crate::engine::{Control, run_plans};
 use crate::error::StudyError;
 use crate::fingerprint::{Fingerprint, Inputs};
-use crate::plan::{Pick, Plan, Solver};
+use crate::plan::Plan;
 use crate::result::Rows;
 use crate::shard::Shard;
 use crate::shot::Shot;
 use crate::stop::stopped;
 use hertzchain_chain::InstructionSet;
-use hertzchain_experiment::{Experiment, Units, Warning};
+use hertzchain_experiment::{Experiment, Method, Pick, Units, Warning};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
 /// How the errors of the shots of a batch are controlled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ErrorControl {
     /// Every shot is compared with two more, with longer steps.
     PerShot,
@@ -42,12 +40,14 @@ impl ErrorControl {
 }
 
 /// Options of a batch of shots.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug)]
 pub struct BatchOptions {
     /// Relative accuracy asked of times of flight.
     pub accuracy: f64,
     /// How the motion is computed.
-    pub solver: Solver,
+    pub method: Method,
+    /// Step in s of a fixed-step method; without one it is halved until the accuracy is reached.
+    pub step_s: Option<f64>,
     /// Duration of a shot in s; until it is over when `None`.
     pub duration_s: Option<f64>,
     /// Where pulses are timed.
@@ -60,7 +60,6 @@ pub struct BatchOptions {
     pub error_control: ErrorControl,
     /// Vector instructions. Other ones have other last bits: workers of one
     /// batch must have the same.
-    #[serde(skip)]
     pub set: InstructionSet,
 }
 
@@ -70,9 +69,10 @@ impl BatchOptions {
         let asked = experiment.solver();
         Self {
             accuracy: asked.accuracy,
-            solver: asked.into(),
+            method: asked.method,
+            step_s: asked.step_s,
             duration_s: asked.duration_s,
-            pick: experiment.pick().into(),
+            pick: experiment.pick(),
             rebound: false,
             checked: false,
             error_control: ErrorControl::default(),
@@ -204,12 +204,9 @@ impl Batch {
     /// paths, times or machines.
     pub fn fingerprint(&self) -> Fingerprint {
         *self.fingerprint.get_or_init(|| {
-            // Plain numbers always have a form in JSON, from which their bits follow.
-            let options = serde_json::to_string(&self.options).unwrap_or_default();
             let inputs = Inputs::of("sweep")
                 .text("experiment", &self.experiment.canonical_text())
-                .text("options", &options)
-                .text("set", self.options.set.name())
+                .text("options", &format!("{:?}", self.options))
                 .numbers("speeds_m_s", &self.speeds_m_s);
             let numbers = self.numbers.iter();
             let all = numbers.fold(inputs, |inputs, (path, values)| inputs.numbers(path, values));
@@ -398,7 +395,8 @@ impl Batch {
         let (plan, warnings) = Plan::from_experiment(experiment, Some(speed_m_s))?;
         let plan = Plan {
             accuracy: self.options.accuracy,
-            solver: self.options.solver,
+            method: self.options.method,
+            step_s: self.options.step_s,
             duration_s: self.options.duration_s,
             pick: self.options.pick,
             rebound: self.options.rebound,

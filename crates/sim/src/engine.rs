@@ -8,13 +8,14 @@ use crate::accuracy;
 use crate::calibration::Calibration;
 use crate::duration::{self, has_wall};
 use crate::error::StudyError;
-use crate::plan::{Pick, Plan, Solver};
+use crate::plan::Plan;
 use crate::prepared::{closed_gaps, is_ambiguous};
 use crate::shot::{Conditioning, Shot, ambiguous, shoot, shoot_checked};
 use crate::stop::stopped;
 use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
 use hertzchain_chain::observe::{Maximum, Passage, Passages, Shape, Signal};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
+use hertzchain_experiment::{Method, Pick};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -174,7 +175,7 @@ pub(crate) fn fit_together(one: &Plan, other: &Plan) -> bool {
 
 /// Whether the loop with equal steps can run a plan to the accuracy asked.
 pub(crate) fn suits(plan: &Plan) -> bool {
-    plan.solver == Solver::Adaptive
+    plan.method == Method::Adaptive
         && !plan.rebound
         && !plan.budget
         && plan.watch.is_none()

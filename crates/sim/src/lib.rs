@@ -44,7 +44,7 @@ pub use self::{
     error::StudyError,
     fingerprint::{Fingerprint, Inputs, commit},
     long_work::Expected,
-    plan::{Pick, Plan, PreparedChain, Solver, Watch},
+    plan::{Plan, PreparedChain, Watch},
     result::{COLUMNS, Column, Failed, Law, Rows, WarningSummary},
     shard::{Shard, StoredShard},
     shot::{Flight, OF_PEAKS, Rebound, Shot, shoot, shoot_checked, shoot_estimated},
@@ -52,3 +52,4 @@ pub use self::{
     stop::{Stop, count_done, note_progress, pool, stopped},
 };
 pub use hertzchain_chain::InstructionSet;
+pub use hertzchain_experiment::{Method, Pick};

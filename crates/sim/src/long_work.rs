@@ -2,10 +2,11 @@
 //! takes too many steps.
 
 use crate::duration::{self, End};
-use crate::plan::{Plan, Solver};
+use crate::plan::Plan;
 use crate::stop::{count_steps, note_progress, stopped};
 use hertzchain_chain::System;
 use hertzchain_chain::wave::{Flow, Observer, Piece};
+use hertzchain_experiment::Method;
 use std::fmt;
 use std::time::Instant;
 
@@ -44,10 +45,8 @@ impl Expected {
         let crossing_s = system.scales().crossing_s;
         let duration_s = plan.duration_s.unwrap_or(WAYS * crossing_s);
         let bodies = system.bodies() as f64;
-        let steps = match plan.solver {
-            Solver::Rk4 { step_s: Some(step_s) } | Solver::Verlet { step_s: Some(step_s) } => {
-                duration_s / step_s
-            }
+        let steps = match (plan.method, plan.step_s) {
+            (Method::Rk4 | Method::Verlet, Some(step_s)) => duration_s / step_s,
             _ => {
                 let steps = STEPS_A_BEAD * bodies * (plan.accuracy / 1e-6).powf(-0.2);
                 steps * duration_s / (WAYS * crossing_s)

@@ -2,80 +2,9 @@
 
 use crate::error::StudyError;
 use hertzchain_chain::{Chain, ChainError, Sensor, Start, System};
-use hertzchain_experiment::{self as experiment, Experiment, Mistakes, Warning};
-use serde::{Deserialize, Serialize};
+use hertzchain_experiment::{Experiment, Method, Mistakes, Pick, Solver, Warning};
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
-
-/// How the motion is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Solver {
-    /// Dormand–Prince 5(4) with steps that end at contact changes.
-    #[default]
-    Adaptive,
-    /// Classical Runge–Kutta; without a step, halved until the accuracy is reached.
-    Rk4 {
-        /// Step in s.
-        step_s: Option<f64>,
-    },
-    /// Velocity Verlet; without a step, halved until the accuracy is reached.
-    Verlet {
-        /// Step in s.
-        step_s: Option<f64>,
-    },
-}
-
-impl Solver {
-    /// The step of a fixed-step method in s, if it is given.
-    pub(crate) fn step_s(self) -> Option<f64> {
-        match self {
-            Self::Adaptive => None,
-            Self::Rk4 { step_s } | Self::Verlet { step_s } => step_s,
-        }
-    }
-}
-
-impl From<experiment::Solver> for Solver {
-    fn from(asked: experiment::Solver) -> Self {
-        let step_s = asked.step_s;
-        match asked.method {
-            experiment::Method::Adaptive => Self::Adaptive,
-            experiment::Method::Rk4 => Self::Rk4 { step_s },
-            experiment::Method::Verlet => Self::Verlet { step_s },
-        }
-    }
-}
-
-/// Where a pulse is timed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Pick {
-    /// At its maximum.
-    #[default]
-    Peak,
-    /// Where its rising flank passes this fraction of its maximum.
-    Flank(f64),
-    /// By the lag of the largest cross-correlation of the two pulses.
-    CrossCorrelation,
-}
-
-impl Pick {
-    /// Every way that an experiment file can ask for.
-    pub const ALL: [Self; 4] =
-        [Self::Peak, Self::Flank(0.1), Self::Flank(0.5), Self::CrossCorrelation];
-}
-
-impl From<experiment::Pick> for Pick {
-    fn from(pick: experiment::Pick) -> Self {
-        match pick {
-            experiment::Pick::Peak => Self::Peak,
-            experiment::Pick::Flank10 => Self::Flank(0.1),
-            experiment::Pick::Flank50 => Self::Flank(0.5),
-            experiment::Pick::CrossCorrelation => Self::CrossCorrelation,
-        }
-    }
-}
 
 /// What to sample while a shot runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,7 +66,9 @@ pub struct Plan {
     /// Relative accuracy asked of times of flight.
     pub accuracy: f64,
     /// How the motion is computed.
-    pub solver: Solver,
+    pub method: Method,
+    /// Step in s of a fixed-step method; without one it is halved until the accuracy is reached.
+    pub step_s: Option<f64>,
     /// Duration in s; when `None` the shot ends once the reflected pulse has
     /// passed the sensor bead and the striker is away for good, or all bodies
     /// fly apart.
@@ -162,8 +93,9 @@ impl Plan {
         Self {
             chain: chain.into(),
             sensor_bead,
-            accuracy: experiment::Solver::DEFAULT_ACCURACY,
-            solver: Solver::Adaptive,
+            accuracy: Solver::DEFAULT_ACCURACY,
+            method: Method::Adaptive,
+            step_s: None,
             duration_s: None,
             rebound: true,
             pick: Pick::Peak,
@@ -187,9 +119,10 @@ impl Plan {
         let asked = experiment.solver();
         let mut plan = Self {
             accuracy: asked.accuracy,
-            solver: asked.into(),
+            method: asked.method,
+            step_s: asked.step_s,
             duration_s: asked.duration_s,
-            pick: experiment.pick().into(),
+            pick: experiment.pick(),
             ..Self::new(chain, experiment.sensor_bead())
         };
         plan.chain.system = Ok(Arc::new(system)).into();
@@ -217,7 +150,7 @@ impl Plan {
     /// This plan, timed by peaks, with all other ways to compare with.
     pub fn comparing_picks(mut self) -> Self {
         self.pick = Pick::Peak;
-        self.compare = Pick::ALL[1..].to_vec();
+        self.compare = vec![Pick::Flank10, Pick::Flank50, Pick::CrossCorrelation];
         self
     }
 
@@ -260,8 +193,7 @@ impl Plan {
                 self.accuracy
             ));
         }
-        let step = self.solver.step_s();
-        positive("the step", step)?;
+        positive("the step", self.step_s)?;
         positive("the duration", self.duration_s)?;
         let interval = self.watch.as_ref().and_then(|watch| watch.interval_s);
         positive("the sampling interval", interval)

@@ -5,13 +5,14 @@ use crate::duration::{self, End};
 use crate::error::StudyError;
 use crate::long_work::CountedShots;
 use crate::other_picks::other_picks;
-use crate::plan::{Plan, Solver, Watch};
+use crate::plan::{Plan, Watch};
 use crate::shot::{Rebound, Shot, ambiguous};
 use crate::stop::stopped;
 use crate::tracker::Tracker;
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Limits, Method, Observer, Outcome, run};
 use hertzchain_chain::{Start, System};
+use hertzchain_experiment::Method as SolverMethod;
 use std::sync::Arc;
 
 /// Loosest tolerance of a run: steps of any chain are then still error-controlled.
@@ -103,10 +104,10 @@ impl<'a> PreparedShot<'a> {
     }
 
     fn computed(&self, check: Check) -> Result<Shot, StudyError> {
-        match (self.plan.solver, self.plan.solver.step_s()) {
-            (Solver::Adaptive, _) => self.adaptive(check),
-            (solver, Some(step_s)) => self.fixed(solver, step_s, check),
-            (solver, None) => self.halving(solver),
+        match (self.plan.method, self.plan.step_s) {
+            (SolverMethod::Adaptive, _) => self.adaptive(check),
+            (method, Some(step_s)) => self.fixed(method, step_s, check),
+            (method, None) => self.halving(method),
         }
     }
 
@@ -256,9 +257,9 @@ impl<'a> PreparedShot<'a> {
 
     /// A fixed step as given, whatever accuracy that is: estimated by a step twice as
     /// long, or by half of it where that fails or a check is asked for.
-    fn fixed(&self, solver: Solver, step_s: f64, check: Check) -> Result<Shot, StudyError> {
-        let mut shot = self.at_step(solver, step_s, self.plan.watch.is_some())?;
-        let at = |share: f64| self.at_step(solver, share * step_s, false);
+    fn fixed(&self, method: SolverMethod, step_s: f64, check: Check) -> Result<Shot, StudyError> {
+        let mut shot = self.at_step(method, step_s, self.plan.watch.is_some())?;
+        let at = |share: f64| self.at_step(method, share * step_s, false);
         let other = match check {
             Check::Unchecked => return Ok(shot),
             Check::Estimated => at(2.0).or_else(|_| at(0.5))?,
@@ -273,19 +274,19 @@ impl<'a> PreparedShot<'a> {
 
     /// Halves the step until the result stands still; gives up as soon as the
     /// order of convergence shows that it would take too long.
-    fn halving(&self, solver: Solver) -> Result<Shot, StudyError> {
+    fn halving(&self, method: SolverMethod) -> Result<Shot, StudyError> {
         let first_s = accuracy::first_step_s(&self.system);
         let step_s = |halving: u32| first_s * 0.5_f64.powf(f64::from(halving));
-        let mut last = self.at_step(solver, first_s, false);
+        let mut last = self.at_step(method, first_s, false);
         let mut halvings = Halvings::default();
         for halving in 1..=MOST_HALVINGS {
-            let next = self.at_step(solver, step_s(halving), false);
+            let next = self.at_step(method, step_s(halving), false);
             halvings.note(match (&last, &next) {
                 (Ok(one), Ok(two)) => one.change(two),
                 _ => f64::INFINITY,
             });
             if halvings.standing() <= self.plan.accuracy {
-                return self.converged(solver, step_s(halving), halvings.standing(), next);
+                return self.converged(method, step_s(halving), halvings.standing(), next);
             }
             let forecast = halvings.forecast(self.plan.accuracy);
             if let (Some(forecast), Ok(shot)) = (forecast, &next)
@@ -299,7 +300,7 @@ impl<'a> PreparedShot<'a> {
         Err(StudyError::NotConverged(format!(
             "{} does not reach an accuracy of {:e}: halving its step down to {:.3e} s still changes the result by \
              {:.1e}, last seen at t = {time_s:.4e} s in contact {contact}; ask for less accuracy or use the adaptive solver",
-            accuracy::fixed(solver, first_s).name,
+            accuracy::fixed(method, first_s).name,
             self.plan.accuracy,
             step_s(MOST_HALVINGS),
             halvings.last(),
@@ -336,21 +337,26 @@ impl<'a> PreparedShot<'a> {
     /// The shot at the step that was found, sampled if asked.
     fn converged(
         &self,
-        solver: Solver,
+        method: SolverMethod,
         step_s: f64,
         change: f64,
         found: Result<Shot, StudyError>,
     ) -> Result<Shot, StudyError> {
         let mut shot = match self.plan.watch {
-            Some(_) => self.at_step(solver, step_s, true)?,
+            Some(_) => self.at_step(method, step_s, true)?,
             None => found?,
         };
         shot.accuracy_reached = Some(change);
         Ok(shot)
     }
 
-    fn at_step(&self, solver: Solver, step_s: f64, sampled: bool) -> Result<Shot, StudyError> {
-        let mut shot = self.once(&accuracy::fixed(solver, step_s), sampled)?;
+    fn at_step(
+        &self,
+        method: SolverMethod,
+        step_s: f64,
+        sampled: bool,
+    ) -> Result<Shot, StudyError> {
+        let mut shot = self.once(&accuracy::fixed(method, step_s), sampled)?;
         shot.step_s = Some(step_s);
         Ok(shot)
     }

@@ -2,12 +2,13 @@
 
 use crate::error::StudyError;
 use crate::other_picks::OtherPick;
-use crate::plan::{Pick, Plan};
+use crate::plan::Plan;
 use crate::prepared::{Check, PreparedShot};
 use hertzchain_chain::observe::{
     Competing, Maximum, Passage, PassageError, Passages, Pulse, Signal, Trace,
 };
 use hertzchain_chain::wave::{Budget, Work};
+use hertzchain_experiment::Pick;
 use hertzchain_measure::signal::delay_by_cross_correlation;
 
 /// How long the pulse took.
@@ -320,7 +321,8 @@ impl Flight {
                 incident_s: passage.tof_incident_s(),
                 reflected_s: passage.tof_reflected_s(),
             }),
-            Pick::Flank(fraction) => {
+            Pick::Flank10 | Pick::Flank50 => {
+                let fraction = if pick == Pick::Flank10 { 0.1 } else { 0.5 };
                 let [sensor, wall, back] = seen.flanks(passage, fraction);
                 let wall = wall?;
                 Some(Self { incident_s: wall - sensor?, reflected_s: back.map(|back| back - wall) })

@@ -15,12 +15,9 @@ fn refused<T>(why: String) -> Result<T, StudyError> {
 /// # Errors
 /// What is wrong with the text.
 pub fn parse_speed(text: &str) -> Result<f64, StudyError> {
-    let expected = ("a number with a unit", "a speed such as 0.5 or \"0.5 m/s\"");
-    let speed = parse_plain_or(text, "m/s", "\"0.5 m/s\"", expected)?;
-    match speed > 0.0 {
-        true => Ok(speed),
-        false => refused(format!("a speed of {speed} m/s is not positive")),
-    }
+    let expected =
+        ["a number with a unit, such as \"0.5 m/s\"", "a speed such as 0.5 or \"0.5 m/s\""];
+    parse_positive(text, ("speed", "m/s"), expected)
 }
 
 /// A time in s from "1e-3", "2 ms" or "1 us".
@@ -28,33 +25,27 @@ pub fn parse_speed(text: &str) -> Result<f64, StudyError> {
 /// # Errors
 /// What is wrong with the text.
 pub fn parse_time(text: &str) -> Result<f64, StudyError> {
-    let expected = ("a time", "a time such as \"2 ms\"");
-    let time = parse_plain_or(text, "s", "\"2 ms\"", expected)?;
-    match time > 0.0 {
-        true => Ok(time),
-        false => refused(format!("a time of {time} s is not positive")),
-    }
+    parse_positive(text, ("time", "s"), ["a time, such as \"2 ms\"", "a time such as \"2 ms\""])
 }
 
-/// A quantity without a unit or with one of the dimension of `unit`.
-fn parse_plain_or(
+/// A positive quantity without a unit or with one of the dimension of `unit`.
+fn parse_positive(
     text: &str,
-    unit: &str,
-    example: &str,
-    (expected, quantity_expected): (&str, &str),
+    (what, unit): (&str, &str),
+    [expected, quantity]: [&str; 2],
 ) -> Result<f64, StudyError> {
     let text = text.trim();
-    let quantity = parse_quantity(text).or_else(|error| {
-        refused(format!("`{text}`: {error}; expected {expected}, such as {example}"))
-    })?;
+    let found = parse_quantity(text)
+        .or_else(|error| refused(format!("`{text}`: {error}; expected {expected}")))?;
     let fits = |unit: &str| {
-        parse_unit(unit).is_ok_and(|unit| quantity.dimension.agrees_with(&unit.dimension))
+        parse_unit(unit).is_ok_and(|unit| found.dimension.agrees_with(&unit.dimension))
     };
-    match fits("1") || fits(unit) {
-        true => Ok(quantity.value),
-        false => {
-            refused(format!("`{text}` is {}, not {quantity_expected}", quantity.dimension.name()))
+    match found.value {
+        _ if !fits("1") && !fits(unit) => {
+            refused(format!("`{text}` is {}, not {quantity}", found.dimension.name()))
         }
+        value if value > 0.0 => Ok(value),
+        value => refused(format!("a {what} of {value} {unit} is not positive")),
     }
 }
 

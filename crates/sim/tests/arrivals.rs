@@ -5,7 +5,7 @@ use hertzchain_chain::Sensor;
 use hertzchain_chain::observe::{PassageError, Pulse};
 use hertzchain_experiment::Experiment;
 use hertzchain_sim::{
-    Control, InstructionSet, Plan, Shot, Solver, run_plans, shoot, shoot_estimated,
+    Control, InstructionSet, Method, Plan, Shot, run_plans, shoot, shoot_estimated,
 };
 
 fn plan(text: &str) -> Plan {
@@ -291,12 +291,12 @@ fn a_fixed_step_is_estimated_too() {
     let right = shoot(&plan.clone().with_accuracy(1e-9)).unwrap().flight.unwrap();
     for step_s in [0.02, 0.1] {
         let step_s = Some(step_s);
-        for solver in [Solver::Rk4 { step_s }, Solver::Verlet { step_s }] {
-            let plan = Plan { solver, ..plan.clone() };
+        for method in [Method::Rk4, Method::Verlet] {
+            let plan = Plan { method, step_s, ..plan.clone() };
             let shot = shoot_estimated(&plan).unwrap();
             let off = shot.flight.unwrap().change(&right);
             let reached = shot.accuracy_reached.unwrap();
-            assert!(off <= reached, "{solver:?}: {off:e} over {reached:e}");
+            assert!(off <= reached, "{method:?}: {off:e} over {reached:e}");
         }
     }
 }

@@ -216,7 +216,7 @@ impl Signal {
     }
 
     /// Whether the signal takes all the memory that it may: steps that follow are not kept.
-    pub fn is_full(&self) -> bool {
+    pub(crate) fn is_full(&self) -> bool {
         self.stretches.len() >= MOST_STRETCHES || self.maxima.len() >= MOST_MAXIMA
     }
 

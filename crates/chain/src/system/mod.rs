@@ -9,7 +9,6 @@ mod scales;
 mod statics;
 
 pub(crate) use contact::TouchColumns;
-pub use statics::StaticContact;
 
 use crate::chain::{Chain, ChainError, Tension};
 use crate::laws::{Columns, Law};
@@ -22,7 +21,7 @@ use std::sync::Arc;
 /// Overlaps below this are treated as 0, so that the double-exponential
 /// forerunner of a wave never reaches denormal numbers. In m (or the unit of
 /// length of a dimensionless chain).
-pub const FLUSH: f64 = 1e-150;
+pub(crate) const FLUSH: f64 = 1e-150;
 
 /// One term of the force over the contacts of a section.
 #[derive(Clone, Debug)]

@@ -55,10 +55,10 @@ pub struct Outcome {
 pub enum SolveError {
     /// Steps became too small to go on.
     #[error(
-        "the solver cannot reach the asked accuracy: at t = {} its step has shrunk to {}, because of \
-         contact {contact}; ask for less accuracy or look at that contact's laws",
+        "the solver cannot reach the asked accuracy: at t = {} its step has shrunk to {}, {}",
         time(*time_s),
-        time(*step_s)
+        time(*step_s),
+        shrunk(*time_s, *step_s, *contact)
     )]
     StepTooSmall {
         /// When, in s.
@@ -176,6 +176,20 @@ fn time(time_s: f64) -> String {
         }
         _ if time_s == 0.0 => "0 s".to_owned(),
         _ => format!("{time_s:.2e} s"),
+    }
+}
+
+/// Why a step has become too small, and what to do.
+fn shrunk(time_s: f64, step_s: f64, contact: usize) -> String {
+    match time_s + step_s > time_s {
+        true => format!(
+            "because of contact {contact}; ask for less accuracy or look at that contact's laws"
+        ),
+        false => {
+            "less than two such times differ by in double precision; ask for a shorter duration \
+                  or less accuracy"
+                .to_owned()
+        }
     }
 }
 

@@ -8,7 +8,7 @@ mod laws;
 
 /// Stands where `crates/chain/src/material.rs` stands.
 mod material {
-    pub use hertzchain_chain::material::*;
+    pub use hertzchain_chain::BeadPair;
 }
 
 use common::{close, row, shoot};

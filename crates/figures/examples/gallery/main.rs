@@ -180,12 +180,12 @@ fn space_time() -> Figure {
     let (beads, times) = (41_u32, 1200_u32);
     let value = |i: u32| velocity(f64::from(i / times), f64::from(i % times));
     let values: Vec<f64> = (0..beads * times).map(value).collect();
-    let heat = |colours, label: &str| {
-        HeatMap::new(times as usize, beads as usize, &values)
-            .x_edges(0.0, 1200.0)
-            .y_edges(-0.5, 40.5)
-            .colours(colours)
-            .label(label)
+    let heat = |colours, label: &str| HeatMap {
+        x_edges: (0.0, 1200.0),
+        y_edges: (-0.5, 40.5),
+        colours,
+        label: label.into(),
+        ..HeatMap::new(times as usize, beads as usize, &values)
     };
     let theory = Series::line("exact solitary wave", &[0.0, 640.0], &[0.0, 40.0])
         .colour(Colour::BLACK)
@@ -290,11 +290,12 @@ fn verdicts_many() -> Figure {
 }
 
 fn claims_table(columns: &[&str]) -> Figure {
-    let row = |table: VerdictMatrix, (i, claim): (usize, &&str)| {
-        let cells: Vec<ClaimVerdict> = (0..columns.len()).map(|c| verdict(i + 3 * c)).collect();
-        table.row(claim, &cells)
+    let row = |(i, claim): (usize, &&str)| {
+        ((*claim).into(), (0..columns.len()).map(|c| verdict(i + 3 * c)).collect())
     };
-    CLAIMS.iter().enumerate().fold(VerdictMatrix::new(columns), row).figure()
+    let columns: Vec<String> = columns.iter().map(|name| (*name).into()).collect();
+    let rows = CLAIMS.iter().enumerate().map(row).collect();
+    VerdictMatrix { columns, rows, ..VerdictMatrix::default() }.figure()
 }
 
 fn paper_rig() -> RigDrawing {
@@ -340,11 +341,12 @@ fn animation() -> Animation {
     };
     let positions_m: Vec<Vec<f64>> = (0..beads).map(path).collect();
     let forces_n: Vec<Vec<f64>> = (0..beads).map(force).collect();
-    Animation::new(&times_s, &positions_m, &forces_n, &[radius_m])
-        .title("Pump oil, 1 m/s")
-        .mark(0, "striker")
-        .mark(7, "sensor bead 7")
-        .wet(7, 40)
+    Animation {
+        title: "Pump oil, 1 m/s".into(),
+        marks: vec![(0, "striker".into()), (7, "sensor bead 7".into())],
+        wet_contacts: Some((7, 40)),
+        ..Animation::new(&times_s, &positions_m, &forces_n, &[radius_m])
+    }
 }
 
 /// Six small panels with shared axes.

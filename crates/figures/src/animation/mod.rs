@@ -19,16 +19,26 @@ const SCRIPT: &str = include_str!("player.js");
 /// Positions are drawn with displacements multiplied by a stated factor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Animation {
-    title: String,
-    times_s: Vec<f64>,
-    positions_m: Vec<Vec<f64>>,
-    forces_n: Vec<Vec<f64>>,
-    radii_m: Vec<f64>,
-    marks: Vec<(usize, String)>,
-    wet_contacts: Option<(usize, usize)>,
-    time_unit: (f64, String),
-    force_unit: String,
-    first_contact: usize,
+    /// Heading of the page; plain text.
+    pub title: String,
+    /// Ascending times.
+    pub times_s: Vec<f64>,
+    /// Positions of each bead at these times.
+    pub positions_m: Vec<Vec<f64>>,
+    /// Forces of each contact at these times.
+    pub forces_n: Vec<Vec<f64>>,
+    /// Radius of each bead.
+    pub radii_m: Vec<f64>,
+    /// Names of beads, such as the striker or the sensor bead; plain text.
+    pub marks: Vec<(usize, String)>,
+    /// First and last contact that is drawn with oil.
+    pub wet_contacts: Option<(usize, usize)>,
+    /// Shown times in a second and their unit, empty in a dimensionless chain; microseconds by default.
+    pub time_unit: (f64, String),
+    /// Unit of forces, empty in a dimensionless chain; newtons by default.
+    pub force_unit: String,
+    /// Number of the contact behind the first bead; 0 by default.
+    pub first_contact: usize,
 }
 
 impl Animation {
@@ -53,38 +63,6 @@ impl Animation {
             force_unit: "N".into(),
             first_contact: 0,
         }
-    }
-
-    /// Heading of the page; plain text.
-    pub fn title(mut self, title: &str) -> Self {
-        self.title = title.into();
-        self
-    }
-
-    /// Names a bead, such as the striker or the sensor bead; plain text.
-    pub fn mark(mut self, bead: usize, name: &str) -> Self {
-        self.marks.push((bead, name.into()));
-        self
-    }
-
-    /// First and last contact that is drawn with oil.
-    pub fn wet(mut self, first: usize, last: usize) -> Self {
-        self.wet_contacts = Some((first, last));
-        self
-    }
-
-    /// Unit of shown times with its number in a second, and unit of forces;
-    /// empty names in a dimensionless chain. Microseconds and newtons by default.
-    pub fn units(mut self, (per_second, time): (f64, &str), force: &str) -> Self {
-        self.time_unit = (per_second, time.into());
-        self.force_unit = force.into();
-        self
-    }
-
-    /// Number of the contact behind the first bead; 0 by default.
-    pub fn first_contact(mut self, number: usize) -> Self {
-        self.first_contact = number;
-        self
     }
 
     /// The page.

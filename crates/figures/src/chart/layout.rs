@@ -116,7 +116,7 @@ pub(crate) fn x_scale(chart: &Chart) -> Scale {
         }
     }
     if let Some(map) = &chart.heat {
-        all.extend([map.x.0, map.x.1]);
+        all.extend([map.x_edges.0, map.x_edges.1]);
     }
     let (tight, airy) = (all.scale(0.0), all.scale(PAD));
     let Some((first, last)) = points.ends().filter(|_| chart.heat.is_none()) else {
@@ -151,7 +151,7 @@ fn y_scale(chart: &Chart) -> Scale {
         }
     }
     if let Some(map) = &chart.heat {
-        extent.extend([map.y.0, map.y.1]);
+        extent.extend([map.y_edges.0, map.y_edges.1]);
     }
     // Maps and stacked areas fill their frame.
     let areas = !chart.series.is_empty() && chart.series.iter().all(Series::is_band);

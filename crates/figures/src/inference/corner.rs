@@ -130,11 +130,13 @@ impl Corner<'_> {
         let levels = SHARES.map(|share| level(&rows, share));
         let depth = |value: &f64| levels.iter().filter(|level| value >= level).count() as f64;
         let depths: Vec<f64> = rows.iter().flatten().map(depth).collect();
-        let areas = HeatMap::new(FINE, FINE, &depths)
-            .x_edges(ranges.0.0, ranges.0.1)
-            .y_edges(ranges.1.0, ranges.1.1)
-            .colours(ColourMap::Blues)
-            .limits(0.0, 2.0);
+        let areas = HeatMap {
+            x_edges: ranges.0,
+            y_edges: ranges.1,
+            colours: ColourMap::Blues,
+            limits: Some((0.0, 2.0)),
+            ..HeatMap::new(FINE, FINE, &depths)
+        };
         let mut chart = self.empty(row, column, count, ranges.0).heat(areas);
         chart = chart.y_range(ranges.1.0, ranges.1.1);
         if let Some(mark) = self.marks.get(row) {

@@ -111,7 +111,7 @@ impl Inferred {
     }
 
     /// Minima of other starts that fit as well, and how many starts came to each.
-    pub fn other_minima(&self) -> Vec<(&Started, usize)> {
+    pub(crate) fn other_minima(&self) -> Vec<(&Started, usize)> {
         let sd: Vec<f64> = (0..self.parameters.len()).map(|at| self.standard_error(at)).collect();
         self.fit.other_minima(&sd)
     }

@@ -63,8 +63,7 @@ fn prospects(advice: &Advice) -> Value {
             "standard_errors": prospect.sd.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
         })
     };
-    let all = std::iter::once(&advice.now).chain(&advice.prospects);
-    all.chain(&advice.together).map(one).collect()
+    std::iter::once(&advice.now).chain(&advice.prospects).map(one).collect()
 }
 
 /// The entries of two objects in one.

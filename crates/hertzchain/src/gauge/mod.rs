@@ -8,12 +8,10 @@ pub use self::{results::json, tables::tables};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
 use crate::input::assumed_preset;
-use crate::options::{CurveOptions as Measured, GaugeOptions as Arguments, WetForm};
+use crate::options::{CurveOptions as Measured, GaugeOptions as Arguments};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
-use hertzchain_infer::gauge::{
-    Chains, Gauge, GaugeLaws, Oil, PowerForm, Verdict, WetRow, known_oils, oils,
-};
+use hertzchain_infer::gauge::{Chains, Gauge, Oil, Verdict, WetRow, known_oils, oils};
 use hertzchain_measure::records::text;
 use std::path::Path;
 
@@ -23,11 +21,7 @@ pub struct GaugeResult {
     pub gauge: Gauge,
     /// K and A, speed by speed.
     pub rows: Vec<WetRow>,
-    /// Power laws through them, where rows determine both.
-    pub laws: Option<GaugeLaws>,
-    /// Power laws fitted to the whole curve, if the option asks for them.
-    pub form: Option<PowerForm>,
-    /// Which oil: by its whole curve, or by the power laws of `form` where these are sufficient.
+    /// Which oil.
     pub verdict: Verdict,
     /// The oils it was held against.
     pub oils: Vec<Oil>,
@@ -65,57 +59,14 @@ pub fn gauge(
         own: &options.own,
         accuracy: options.accuracy.0,
     };
-    run_gauge(&chains, (dry, wet), oils, options.form)
-}
-
-/// Holds what is measured against models and oils.
-///
-/// # Errors
-/// What is in the way of the dry fit or of the verdict.
-fn run_gauge(
-    chains: &Chains<'_>,
-    (dry, wet): (Data, Data),
-    oils: Vec<Oil>,
-    form: WetForm,
-) -> Result<GaugeResult, Failure> {
-    let gauge = Gauge::new(chains, dry, wet);
+    let gauge = Gauge::new(&chains, dry, wet);
     wanted()?;
     let gauge = gauge.map_err(user)?;
     let rows = gauge.rows();
     wanted()?;
-    let form = match form {
-        WetForm::Each => Ok(None),
-        WetForm::Power => gauge.power_form().map(Some),
-    };
+    let verdict = gauge.verdict(&oils);
     wanted()?;
-    let form = form.map_err(user)?;
-    let verdict = match &form {
-        None => gauge.verdict(&oils),
-        Some(form) => gauge.verdict_of_laws(form, &oils),
-    };
-    wanted()?;
-    Ok(GaugeResult {
-        laws: GaugeLaws::through(&rows).ok(),
-        verdict: verdict.map_err(user)?,
-        form,
-        oils,
-        rows,
-        gauge,
-    })
-}
-
-impl GaugeResult {
-    /// What speaks against believing it.
-    pub fn doubts(&self) -> Option<String> {
-        let form = self.form.as_ref().and_then(PowerForm::doubts);
-        let all = form.into_iter().chain(self.gauge.doubts(&self.verdict));
-        all.reduce(|doubts, more| format!("{doubts} {more}"))
-    }
-
-    /// What to add to data that do not separate K and A, if nothing else does.
-    pub fn to_add(&self) -> Option<&'static str> {
-        self.gauge.to_add().filter(|_| self.form.is_none())
-    }
+    Ok(GaugeResult { verdict: verdict.map_err(user)?, oils, rows, gauge })
 }
 
 /// Presets of the paper where no model is named.

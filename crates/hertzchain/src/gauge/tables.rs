@@ -3,9 +3,7 @@
 use super::GaugeResult;
 use crate::csv::{Cell, Csv};
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{
-    Branch, Contact, Match, NuisanceParameter, Pair, PowerForm, Scan, SharedLaw, WetRow,
-};
+use hertzchain_infer::gauge::{Branch, Contact, Match, NuisanceParameter, Pair, WetRow};
 
 /// Every table: files' names and what stands in them.
 pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
@@ -16,11 +14,6 @@ pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
         ("oils.csv", oils(run_gauge)),
     ];
     all.extend((!run_gauge.verdict.failed.is_empty()).then(|| ("failed.csv", failed(run_gauge))));
-    all.extend(run_gauge.laws.is_some().then(|| ("laws.csv", laws(run_gauge))));
-    if let Some(form) = &run_gauge.form {
-        all.push(("form.csv", form_laws(form)));
-        all.push(("form-contacts.csv", form_contacts(form, run_gauge)));
-    }
     all
 }
 
@@ -28,17 +21,13 @@ pub fn tables(run_gauge: &GaugeResult) -> Vec<(&'static str, String)> {
 fn summary(run_gauge: &GaugeResult) -> String {
     let (gauge, verdict) = (&run_gauge.gauge, &run_gauge.verdict);
     let chi_square = gauge.dry_goodness().chi_square;
-    let form = run_gauge.form.as_ref().and_then(|form| form.chi_square);
-    let lines: [(&str, Cell); 9] = [
+    let lines: [(&str, Cell); 6] = [
         ("verdict", verdict.sentence().into()),
-        ("doubts", run_gauge.doubts().into()),
-        ("to_add", run_gauge.to_add().into()),
+        ("doubts", gauge.doubts(verdict).into()),
+        ("to_add", gauge.to_add().into()),
         ("dry_chi_square", chi_square.map(|c| c.value).into()),
         ("dry_freedom", chi_square.map(|c| c.freedom).into()),
         ("dry_probability", chi_square.map(|c| c.probability).into()),
-        ("form_chi_square", form.map(|c| c.value).into()),
-        ("form_freedom", form.map(|c| c.freedom).into()),
-        ("form_probability", form.map(|c| c.probability).into()),
     ];
     let line = |(name, value): (&str, Cell)| [name.into(), value];
     Csv::new(["quantity", "value"]).with_all(lines, line).text()
@@ -47,7 +36,7 @@ fn summary(run_gauge: &GaugeResult) -> String {
 /// One line a parameter of the dry contacts.
 fn dry(run_gauge: &GaugeResult) -> String {
     let gauge = &run_gauge.gauge;
-    let numbered = gauge.dry().parameters().iter().enumerate();
+    let numbered = gauge.dry.parameters().iter().enumerate();
     let line = |(at, parameter): (usize, &hertzchain_infer::Parameter)| -> [Cell; 4] {
         [
             parameter.name.clone().into(),
@@ -101,7 +90,7 @@ fn pairs(row: &WetRow, contact: &Contact) -> Vec<Line> {
     };
     taken[9] = (contact.branch != Branch::Unknown).into();
     taken[11] = contact.branch.name().into();
-    taken[12] = contact.scan.as_ref().map(Scan::is_complete).map_or(Cell::Empty, Cell::from);
+    taken[12] = contact.is_complete.map_or(Cell::Empty, Cell::from);
     let other = |other: &Pair| {
         let mut cells = pair(row, other);
         cells[9] = false.into();
@@ -115,7 +104,7 @@ fn pair(row: &WetRow, pair: &Pair) -> Line {
     let mut cells = begun(row);
     (cells[2], cells[3]) = (k.into(), k_sd.into());
     (cells[4], cells[5]) = (a.into(), a_sd.into());
-    cells[6] = pair.covariance()[0][1].into();
+    cells[6] = pair.covariance[0][1].into();
     cells
 }
 
@@ -151,61 +140,4 @@ fn oils(run_gauge: &GaugeResult) -> String {
 fn failed(run_gauge: &GaugeResult) -> String {
     let line = |(oil, why): &(String, String)| [oil.clone(), why.clone()];
     Csv::new(["name", "why"]).with_all(&run_gauge.verdict.failed, line).text()
-}
-
-/// What both laws are of, and the unit of their prefactors.
-const CALLED: [(&str, &str); 2] = [("stiffness", "N/m^1.5"), ("relaxation_time", "s")];
-
-/// One line a power law through values of single speeds.
-fn laws(run_gauge: &GaugeResult) -> String {
-    let titles =
-        "law,unit,prefactor,prefactor_relative_error,exponent,exponent_error,reduced_chi_square";
-    let line = |((name, unit), law): ((&str, &str), &SharedLaw)| -> [Cell; 7] {
-        [
-            name.into(),
-            unit.into(),
-            law.law.prefactor.into(),
-            law.ln_prefactor_sd.into(),
-            law.law.exponent.into(),
-            law.exponent_sd.into(),
-            law.reduced_chi_square.into(),
-        ]
-    };
-    let both = run_gauge
-        .laws
-        .iter()
-        .flat_map(|laws| [(CALLED[0], &laws.stiffness), (CALLED[1], &laws.relaxation)]);
-    Csv::new(titles.split(',')).with_all(both, line).text()
-}
-
-/// One line a power law of the whole curve.
-fn form_laws(form: &PowerForm) -> String {
-    let sd = form.sd();
-    let line = |((name, unit), at): ((&str, &str), usize)| -> [Cell; 7] {
-        [
-            name.into(),
-            unit.into(),
-            form.values[at].exp().into(),
-            sd[at].into(),
-            form.values[at + 1].into(),
-            sd[at + 1].into(),
-            form.covariance[at][at + 1].into(),
-        ]
-    };
-    let titles = "law,unit,prefactor,prefactor_relative_error,exponent,exponent_error,\
-                  covariance_of_ln_prefactor_and_exponent";
-    let both = [(CALLED[0], 0), (CALLED[1], 2)];
-    Csv::new(titles.split(',')).with_all(both, line).text()
-}
-
-/// One line a speed: K and A by both laws of the whole curve.
-fn form_contacts(form: &PowerForm, run_gauge: &GaugeResult) -> String {
-    let titles = "speed_m_s,stiffness (N/m^1.5),stiffness_error (N/m^1.5),relaxation_time_s,\
-                  relaxation_time_s_error";
-    let line = |speed: f64| {
-        let [(k, k_sd), (a, a_sd)] = form.at(speed).estimates();
-        [speed, k, k_sd, a, a_sd]
-    };
-    let speeds = run_gauge.gauge.wet().speeds_m_s();
-    Csv::new(titles.split(',')).with_all(speeds, line).text()
 }

@@ -384,9 +384,6 @@ pub struct GaugeOptions {
     #[arg(long, value_name = "NAME=SD", value_delimiter = ',')]
     #[serde(with = "pairs")]
     pub systematic: Vec<Assignment>,
-    /// How K and A of the wet contacts depend on speed
-    #[arg(long, value_enum, value_name = "FORM", default_value = "each")]
-    pub form: WetForm,
     /// Table (CSV) of further oils, with the columns of the program's own
     #[arg(long, value_name = "FILE")]
     #[serde(skip_serializing)]
@@ -406,17 +403,6 @@ pub struct GaugeOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
-}
-
-/// How K and A depend on speed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum WetForm {
-    /// In any way: each speed for itself
-    #[default]
-    Each,
-    /// As power laws of speed, fitted to the whole curve; incident times do if speeds are known well
-    Power,
 }
 
 /// Ways to determine uncertainty.

@@ -11,7 +11,7 @@ pub use self::{
     given::{Given, check_speeds},
     infer::{
         CurveOptions, DesignOptions, Filter, FitOptions, GaugeOptions, Method, ModelOptions,
-        ParameterOptions, RecordOptions, WetForm, What,
+        ParameterOptions, RecordOptions, What,
     },
     measure::{
         LiveOptions, MeasureOptions, MethodName, PickOptions, ReadingOptions, RowsAre, SampleType,

@@ -8,7 +8,7 @@ use crate::least_squares::{JUMPING, jacobian_at};
 use crate::linear::norm;
 use crate::{Candidate, Fit, InferError, ModelError};
 use hertzchain_experiment::Experiment;
-use hertzchain_experiment::reading::PreloadReading;
+use hertzchain_experiment::reading::PRELOAD_N;
 use hertzchain_measure::signal::Estimate;
 
 /// What a way to measure asks of the rig, beyond another speed.
@@ -87,11 +87,9 @@ impl ExpectedErrors {
             correlation: median(correlations).unwrap_or(0.0),
         }
     }
-}
 
-impl ExpectedErrors {
     /// Of an observable.
-    pub(super) fn of(&self, observable: Observable) -> f64 {
+    fn of(&self, observable: Observable) -> f64 {
         match observable.is_time() {
             true => self.time_s,
             false => self.ratio,
@@ -116,16 +114,9 @@ pub struct Choices {
     pub costs: [f64; Kind::ALL.len()],
 }
 
-/// Push of the paper's springs in N: that of its reading.
-pub const USUAL_PRELOAD_N: f64 = hertzchain_experiment::reading::PRELOAD_N;
-
 impl Default for Choices {
     fn default() -> Self {
-        Self {
-            preloads_n: vec![USUAL_PRELOAD_N],
-            sensor_beads: None,
-            costs: [1.0; Kind::ALL.len()],
-        }
+        Self { preloads_n: vec![PRELOAD_N], sensor_beads: None, costs: [1.0; Kind::ALL.len()] }
     }
 }
 
@@ -184,14 +175,6 @@ pub fn ways(experiment: &Experiment, choices: &Choices) -> Result<Vec<Way>, Infe
         ways.push(way(Kind::Preload, &name, &pushed, &both));
     }
     Ok(ways)
-}
-
-/// The chain with the usual push on bead 1, if it has none and bears it.
-pub(super) fn pushed(experiment: &Experiment) -> Option<Experiment> {
-    let none = experiment.reading().preload == PreloadReading::None;
-    let bare = none && !experiment.get(PUSH).is_ok_and(|force_n| force_n > 0.0);
-    let pushed = bare.then(|| experiment.with_push(USUAL_PRELOAD_N));
-    pushed?.ok()
 }
 
 impl CurveProblem {
@@ -259,7 +242,7 @@ fn of_way(
 }
 
 /// Data as they would be at the fit, without noise.
-pub(super) fn expected(
+fn expected(
     model: &Model,
     fit: &Fit,
     way: &Way,

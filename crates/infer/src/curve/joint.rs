@@ -10,7 +10,7 @@ use hertzchain_sim::{Fingerprint, Inputs};
 
 /// Where a parameter of one curve's model comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Supply {
+pub(crate) enum Supply {
     /// A parameter of the problem, by its place.
     Free(usize),
     /// A fixed value in its unit.
@@ -148,7 +148,10 @@ impl CurveProblem {
     ///
     /// # Errors
     /// No parameter, one that cannot be free, or fewer numbers than unknowns.
-    pub fn with_data(&self, data: impl IntoIterator<Item = Data>) -> Result<Self, InferError> {
+    pub(crate) fn with_data(
+        &self,
+        data: impl IntoIterator<Item = Data>,
+    ) -> Result<Self, InferError> {
         let curves = self.curves.iter().zip(data).map(|(curve, data)| curve.with_data(data));
         Self::unchecked(self.parameters.clone(), curves.collect()).checked()
     }

@@ -16,10 +16,11 @@ mod whiten;
 pub use self::{
     advice::{Advice, Prospect},
     band::FitCurve,
-    candidates::{Choices, ExpectedErrors, Kind, USUAL_PRELOAD_N, Way, ways},
-    joint::{CurveProblem, Supply},
+    candidates::{Choices, ExpectedErrors, Kind, Way, ways},
+    joint::CurveProblem,
     model::{Model, Predicted, Speeds},
     problem::MeasuredCurve,
     surrogate::Surrogate,
 };
+pub(crate) use joint::Supply;
 pub(crate) use model::Shooting;

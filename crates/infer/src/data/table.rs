@@ -18,8 +18,8 @@ pub struct Defaults {
     pub scatter: Scatter,
 }
 
-/// Number of shots from whose scatter standard errors come. Such errors are widened by
-/// [`widening`](crate::widening) in fits.
+/// Number of shots from whose scatter standard errors come. Fits widen
+/// such errors by what their own uncertainty costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scatter {
     /// As the table says of each row's own errors, in columns as `measure` writes them: `shots`, and

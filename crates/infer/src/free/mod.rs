@@ -11,7 +11,6 @@ mod start;
 
 use crate::{InferError, Parameter, Prior};
 use hertzchain_experiment::{Experiment, Reference};
-pub use name::SHORT_NAMES;
 use name::Target;
 use std::collections::HashSet;
 

@@ -5,7 +5,7 @@ use crate::InferError;
 use hertzchain_experiment::{Experiment, NamedNumber};
 
 /// Short names: what each stands for, and the end of its path.
-pub const SHORT_NAMES: [(&str, &str, &str); 17] = [
+const SHORT_NAMES: [(&str, &str, &str); 17] = [
     ("Y", "Young modulus", "young_modulus"),
     ("nu", "Poisson ratio", "poisson_ratio"),
     ("eta", "viscosity", "shear_viscosity"),

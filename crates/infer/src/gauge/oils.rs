@@ -2,83 +2,99 @@
 
 use crate::InferError;
 use crate::data::with_plain_ends;
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::{ErrorKind, ReaderBuilder, Trim};
 use hertzchain_chain::{BeadPair, Material};
+use serde::Deserialize;
 
 /// The table that comes with the program: the paper's three.
 const KNOWN: &str = include_str!("../../data/oils.csv");
 
-/// prefactor · v^exponent of the striker's speed v in m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OilLaw {
-    /// Value at 1 m/s.
-    pub prefactor: f64,
-    /// Exponent.
-    pub exponent: f64,
-}
-
-impl OilLaw {
-    fn at(self, speed_m_s: f64) -> f64 {
-        self.prefactor * speed_m_s.powf(self.exponent)
-    }
-}
-
-/// How an oil's contact is described.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Description {
-    /// By an effective material of both sides, as in the paper.
-    Material {
-        /// Young modulus in Pa.
-        young_modulus_pa: f64,
-        /// Poisson ratio.
-        poisson_ratio: OilLaw,
-        /// Viscosity in Pa s, shear and bulk alike.
-        viscosity_pa_s: OilLaw,
-    },
-    /// By the contact's own numbers.
-    Contact {
-        /// Hertz stiffness K in N/m^{3/2}.
-        stiffness: OilLaw,
-        /// Relaxation time A in s.
-        relaxation_s: OilLaw,
-    },
-}
-
-/// An oil of a table.
-#[derive(Clone, Debug, PartialEq)]
+/// An oil of a table, a column each: either an effective material of both sides of a contact, as in
+/// the paper, or the contact's own numbers. Those that depend on the striker's speed v in m/s are
+/// prefactor · v^exponent, constant without an exponent.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default)]
 pub struct Oil {
     /// Name.
     pub name: String,
-    /// What it makes of a contact.
-    pub description: Description,
+    /// Young modulus in Pa.
+    pub young_modulus_pa: Option<f64>,
+    /// Poisson ratio at 1 m/s.
+    pub poisson_prefactor: Option<f64>,
+    /// Its exponent.
+    pub poisson_exponent: Option<f64>,
+    /// Viscosity in Pa s at 1 m/s, shear and bulk alike.
+    pub viscosity_prefactor_pa_s: Option<f64>,
+    /// Its exponent.
+    pub viscosity_exponent: Option<f64>,
+    /// Hertz stiffness K in N/m^{3/2} at 1 m/s.
+    pub stiffness_prefactor: Option<f64>,
+    /// Its exponent.
+    pub stiffness_exponent: Option<f64>,
+    /// Relaxation time A in s at 1 m/s.
+    pub relaxation_prefactor_s: Option<f64>,
+    /// Its exponent.
+    pub relaxation_exponent: Option<f64>,
     /// Where the numbers come from.
     pub source: String,
 }
+
+/// Contact laws end below this Poisson ratio; the paper's effective materials go beyond 1/2.
+const BELOW: f64 = 1.0;
 
 impl Oil {
     /// K in N/m^{3/2} and A in s of a contact of spheres with this reduced radius
     /// R* in m, at a speed of the striker in m/s.
     pub fn contact(&self, reduced_radius_m: f64, speed_m_s: f64) -> (f64, f64) {
-        match self.description {
-            Description::Contact { stiffness, relaxation_s } => {
-                (stiffness.at(speed_m_s), relaxation_s.at(speed_m_s))
-            }
-            Description::Material { young_modulus_pa, poisson_ratio, viscosity_pa_s } => {
-                let viscosity = viscosity_pa_s.at(speed_m_s);
-                let material = Material {
-                    young_modulus_pa,
-                    poisson_ratio: poisson_ratio.at(speed_m_s),
-                    shear_viscosity_pa_s: viscosity,
-                    bulk_viscosity_pa_s: viscosity,
-                };
-                let pair = BeadPair {
-                    left: material,
-                    right: material,
-                    radius_m: reduced_radius_m,
-                    mass_kg: f64::NAN,
-                };
-                (pair.hertz_stiffness(), material.relaxation_time_s())
-            }
+        let law = |prefactor: Option<f64>, exponent: Option<f64>| {
+            prefactor.unwrap_or(f64::NAN) * speed_m_s.powf(exponent.unwrap_or(0.0))
+        };
+        if self.stiffness_prefactor.is_some() {
+            let stiffness = law(self.stiffness_prefactor, self.stiffness_exponent);
+            return (stiffness, law(self.relaxation_prefactor_s, self.relaxation_exponent));
+        }
+        let viscosity_pa_s = law(self.viscosity_prefactor_pa_s, self.viscosity_exponent);
+        let material = Material {
+            young_modulus_pa: law(self.young_modulus_pa, None),
+            poisson_ratio: law(self.poisson_prefactor, self.poisson_exponent),
+            shear_viscosity_pa_s: viscosity_pa_s,
+            bulk_viscosity_pa_s: viscosity_pa_s,
+        };
+        let pair = BeadPair {
+            left: material,
+            right: material,
+            radius_m: reduced_radius_m,
+            mass_kg: f64::NAN,
+        };
+        (pair.hertz_stiffness(), material.relaxation_time_s())
+    }
+
+    /// Checks that it has a name and either all of a material or all of a contact, in range.
+    fn check(&self) -> Result<(), String> {
+        let material = [
+            ("young_modulus_pa", self.young_modulus_pa, f64::INFINITY),
+            ("poisson_prefactor", self.poisson_prefactor, BELOW),
+            ("viscosity_prefactor_pa_s", self.viscosity_prefactor_pa_s, f64::INFINITY),
+        ];
+        let contact = [
+            ("stiffness_prefactor", self.stiffness_prefactor, f64::INFINITY),
+            ("relaxation_prefactor_s", self.relaxation_prefactor_s, f64::INFINITY),
+        ];
+        let mut all = material.iter().chain(&contact);
+        let wrong = |value: f64, below: f64| !(value > 0.0 && value < below);
+        let count = |of: &[(&str, Option<f64>, f64)]| of.iter().filter(|it| it.1.is_some()).count();
+        match all.find(|(_, value, below)| value.is_some_and(|value| wrong(value, *below))) {
+            _ if self.name.is_empty() => Err("an oil without a name".to_owned()),
+            Some((title, value, below)) => Err(format!(
+                "{title} is {}; expected more than 0, less than {below}",
+                value.unwrap_or(f64::NAN)
+            )),
+            None if matches!((count(&material), count(&contact)), (3, 0) | (0, 2)) => Ok(()),
+            None => Err(format!(
+                "{}: expected either young_modulus_pa, poisson_prefactor and \
+                 viscosity_prefactor_pa_s, or stiffness_prefactor and relaxation_prefactor_s",
+                self.name
+            )),
         }
     }
 }
@@ -101,98 +117,27 @@ pub fn oils(file: &str, text: &str) -> Result<Vec<Oil>, InferError> {
     let mut reader =
         ReaderBuilder::new().comment(Some(b'#')).trim(Trim::All).from_reader(text.as_bytes());
     let wrong = |line: u64, what: String| InferError::Input(format!("{file}, line {line}: {what}"));
-    let titles = reader.headers().map_err(|error| wrong(1, error.to_string()))?;
-    let titles = titles.clone();
-    let oil = |record: Result<StringRecord, csv::Error>| {
+    let titles = reader.headers().map_err(|error| wrong(1, error.to_string()))?.clone();
+    let mut all: Vec<Oil> = Vec::new();
+    for record in reader.records() {
         let record = record.map_err(|error| wrong(0, error.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let row = Row { titles: &titles, record: &record };
-        row.oil().map_err(|what| wrong(line, what))
-    };
-    let mut all: Vec<Oil> = Vec::new();
-    for (at, record) in reader.records().enumerate() {
-        let line = record.as_ref().ok().and_then(StringRecord::position);
-        let line = line.map_or(at as u64 + 2, csv::Position::line);
-        let found = oil(record)?;
-        if all.iter().any(|known| known.name == found.name) {
-            let what =
-                format!("{} stands in the table twice: give each oil its own name", found.name);
+        let oil: Oil = record.deserialize(Some(&titles)).map_err(|error| {
+            let at = match error.kind() {
+                ErrorKind::Deserialize { err, .. } => err.field().map_or(0, |at| at as usize),
+                _ => 0,
+            };
+            let (title, text) = (titles.get(at), record.get(at));
+            let [title, text] = [title, text].map(Option::unwrap_or_default);
+            wrong(line, format!("{title}: `{text}` is no number"))
+        })?;
+        oil.check().map_err(|what| wrong(line, what))?;
+        if all.iter().any(|known| known.name == oil.name) {
+            let name = oil.name;
+            let what = format!("{name} stands in the table twice: give each oil its own name");
             return Err(wrong(line, what));
         }
-        all.push(found);
+        all.push(oil);
     }
     Ok(all)
-}
-
-/// Contact laws end below this Poisson ratio; the paper's effective materials go beyond 1/2.
-const BELOW: f64 = 1.0;
-
-struct Row<'a> {
-    titles: &'a StringRecord,
-    record: &'a StringRecord,
-}
-
-impl Row<'_> {
-    fn text(&self, column: &str) -> &str {
-        let at = self.titles.iter().position(|title| title == column);
-        at.and_then(|at| self.record.get(at)).unwrap_or_default()
-    }
-
-    fn number(&self, column: &str) -> Result<Option<f64>, String> {
-        let text = self.text(column);
-        if text.is_empty() {
-            return Ok(None);
-        }
-        let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-        let number = number.ok_or_else(|| format!("{column}: `{text}` is no number"))?;
-        Ok(Some(number))
-    }
-
-    /// A power law of two columns; its exponent is 0 where none stands.
-    fn law(&self, prefactor: &str, exponent: &str) -> Result<Option<OilLaw>, String> {
-        let exponent = self.number(exponent)?.unwrap_or(0.0);
-        match self.number(prefactor)? {
-            None => Ok(None),
-            Some(value) if prefactor == "poisson_prefactor" && value >= BELOW => Err(format!(
-                "{prefactor} is {value}, the Poisson ratio at 1 m/s; expected less than {BELOW}"
-            )),
-            Some(value) if value > 0.0 => Ok(Some(OilLaw { prefactor: value, exponent })),
-            Some(value) => Err(format!("{prefactor} is {value}; expected more than 0")),
-        }
-    }
-
-    fn oil(&self) -> Result<Oil, String> {
-        let name = self.text("name");
-        if name.is_empty() {
-            return Err("an oil without a name".to_owned());
-        }
-        let material = (
-            self.law("young_modulus_pa", "")?,
-            self.law("poisson_prefactor", "poisson_exponent")?,
-            self.law("viscosity_prefactor_pa_s", "viscosity_exponent")?,
-        );
-        let contact = (
-            self.law("stiffness_prefactor", "stiffness_exponent")?,
-            self.law("relaxation_prefactor_s", "relaxation_exponent")?,
-        );
-        let description = match (material, contact) {
-            ((Some(young), Some(poisson_ratio), Some(viscosity_pa_s)), (None, None)) => {
-                Description::Material {
-                    young_modulus_pa: young.prefactor,
-                    poisson_ratio,
-                    viscosity_pa_s,
-                }
-            }
-            ((None, None, None), (Some(stiffness), Some(relaxation_s))) => {
-                Description::Contact { stiffness, relaxation_s }
-            }
-            _ => {
-                return Err(format!(
-                    "{name}: expected either young_modulus_pa, poisson_prefactor and \
-                     viscosity_prefactor_pa_s, or stiffness_prefactor and relaxation_prefactor_s"
-                ));
-            }
-        };
-        Ok(Oil { name: name.to_owned(), description, source: self.text("source").to_owned() })
-    }
 }

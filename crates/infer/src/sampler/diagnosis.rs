@@ -21,7 +21,7 @@ const WINDOW: f64 = 5.0;
 /// τ by Sokal's automatic window, from autocovariances about the mean of all chains and averaged
 /// over these: walkers at different places lengthen it, as they should. Chains must have equal
 /// lengths. 1 for constant chains; unresolved after a request to stop.
-pub fn autocorrelation_time(chains: &[Vec<f64>]) -> Autocorrelation {
+fn autocorrelation_time(chains: &[Vec<f64>]) -> Autocorrelation {
     let length = chains.iter().map(Vec::len).min().unwrap_or(0);
     let count = (length * chains.len()) as f64;
     let mean = chains.iter().flatten().sum::<f64>() / count;
@@ -293,7 +293,7 @@ fn test_times(steps: u64) -> (bool, u64) {
 /// R̂ of chains cut in halves: √(1 − 1/n + B/W), with W the mean variance within a half and B the
 /// variance of their means [GelmanRubin1992]. Walkers n steps long and correlated over τ have about
 /// √(1 + τ/n) of chance alone. NaN if halves have less than two samples; 1 for constant chains.
-pub fn split_r_hat(chains: &[Vec<f64>]) -> f64 {
+fn split_r_hat(chains: &[Vec<f64>]) -> f64 {
     let halves = chains.iter().flat_map(|chain| {
         let half = chain.len() / 2;
         [&chain[..half], &chain[chain.len() - half..]]
@@ -362,13 +362,9 @@ impl Posterior {
     pub fn sd(&self, parameter: usize) -> f64 {
         self.covariance[parameter][parameter].sqrt()
     }
-
-    /// Standard error of a mean from a finite chain: σ/√(effective samples).
-    pub fn mean_error(&self, parameter: usize) -> f64 {
-        self.sd(parameter) / self.diagnoses[parameter].effective.sqrt()
-    }
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 #[path = "tests/lead.rs"]
 mod tests;

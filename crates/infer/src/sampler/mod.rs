@@ -5,8 +5,5 @@ mod diagnosis;
 
 pub use self::{
     chain::{Chain, Sampling},
-    diagnosis::{
-        Autocorrelation, Diagnosis, Posterior, Requirements, Shortfall, Unconverged,
-        autocorrelation_time, split_r_hat,
-    },
+    diagnosis::{Autocorrelation, Diagnosis, Posterior, Requirements, Shortfall, Unconverged},
 };

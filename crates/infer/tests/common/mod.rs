@@ -12,7 +12,7 @@ use hertzchain_infer::{
     Speeds,
 };
 use hertzchain_measure::signal::Estimate;
-use hertzchain_sim::{Plan, Solver, shoot};
+use hertzchain_sim::{Method, Plan, shoot};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -117,7 +117,7 @@ impl Truth {
     pub(crate) fn shot_by_rk4(&mut self, experiment: &Experiment, step_s: f64) {
         for (row, speed) in self.curve.iter_mut().zip(&self.speeds_m_s) {
             let (mut plan, _) = Plan::from_experiment(experiment, Some(*speed)).unwrap();
-            plan.solver = Solver::Rk4 { step_s: Some(step_s) };
+            (plan.method, plan.step_s) = (Method::Rk4, Some(step_s));
             let flight = shoot(&plan.for_flights()).unwrap().flight.unwrap();
             (row[0], row[1]) = (Some(flight.incident_s), flight.reflected_s);
         }

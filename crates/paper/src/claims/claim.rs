@@ -109,7 +109,7 @@ impl<E> Evaluator<E> {
 impl Evaluator {
     /// Whether the claim is about what a shot of a case leaves behind when the
     /// pulses have passed: the striker or the gaps.
-    pub fn needs_end(&self, case: &str, speed_m_s: f64) -> bool {
+    pub(crate) fn needs_end(&self, case: &str, speed_m_s: f64) -> bool {
         predicates::OF_THE_END.contains(&self.claim.predicate.as_str())
             && self.covers(case, speed_m_s)
     }
@@ -146,7 +146,7 @@ pub fn claims() -> Result<Vec<Evaluator>, ClaimError> {
 ///
 /// # Errors
 /// A text that is no list of claims, an unknown predicate, a name used twice.
-pub fn read<E>(
+pub(crate) fn read<E>(
     text: &str,
     find: impl Fn(&str) -> Option<Predicate<E>>,
 ) -> Result<Vec<Evaluator<E>>, ClaimError> {
@@ -230,14 +230,14 @@ impl EvaluatedClaim {
 }
 
 /// Decides all claims on the constants as printed.
-pub fn evaluate_all<E>(evaluators: &[Evaluator<E>], printed: &E) -> Vec<EvaluatedClaim> {
+pub(crate) fn evaluate_all<E>(evaluators: &[Evaluator<E>], printed: &E) -> Vec<EvaluatedClaim> {
     evaluate_all_rounded(evaluators, printed, &[])
 }
 
 /// Decides all claims on the constants as printed, and looks what draws within
 /// their rounding do: a claim of which one draw lies on another side than the
 /// printed constants is not decidable.
-pub fn evaluate_all_rounded<E>(
+pub(crate) fn evaluate_all_rounded<E>(
     evaluators: &[Evaluator<E>],
     printed: &E,
     draws: &[E],

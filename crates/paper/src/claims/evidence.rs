@@ -20,10 +20,10 @@ pub enum TofBranch {
 
 impl TofBranch {
     /// Both, the incident first.
-    pub const BOTH: [Self; 2] = [Self::Incident, Self::Reflected];
+    pub(crate) const BOTH: [Self; 2] = [Self::Incident, Self::Reflected];
 
     /// As written in tables.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Incident => "incident",
             Self::Reflected => "reflected",
@@ -80,7 +80,7 @@ pub struct ShotPoint {
 
 impl ShotPoint {
     /// The ToF of a branch in s.
-    pub fn tof_s(&self, branch: TofBranch) -> f64 {
+    pub(crate) fn tof_s(&self, branch: TofBranch) -> f64 {
         match branch {
             TofBranch::Incident => self.tof_incident_s,
             TofBranch::Reflected => self.tof_reflected_s,
@@ -104,12 +104,12 @@ pub struct Curve {
 
 impl Curve {
     /// All speeds in m/s.
-    pub fn speeds_m_s(&self) -> Vec<f64> {
+    pub(crate) fn speeds_m_s(&self) -> Vec<f64> {
         self.points.iter().map(|p| p.speed_m_s).collect()
     }
 
     /// All ToFs of a branch in s.
-    pub fn tofs_s(&self, branch: TofBranch) -> Vec<f64> {
+    pub(crate) fn tofs_s(&self, branch: TofBranch) -> Vec<f64> {
         self.points.iter().map(|p| p.tof_s(branch)).collect()
     }
 
@@ -166,7 +166,7 @@ impl Curve {
     ///
     /// # Errors
     /// Fewer than two speeds, or a ToF that is not a positive number.
-    pub fn power_law(&self, branch: TofBranch) -> Result<PowerLaw, FitError> {
+    pub(crate) fn power_law(&self, branch: TofBranch) -> Result<PowerLaw, FitError> {
         power_law(&self.speeds_m_s(), &self.tofs_s(branch), None)
     }
 
@@ -182,7 +182,7 @@ impl Curve {
 
 /// Wet over dry incident ToF at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TofRatio {
+pub(crate) struct TofRatio {
     /// Speed of the striker in m/s.
     pub speed_m_s: f64,
     /// Ratio of the incident ToFs.
@@ -213,7 +213,7 @@ pub struct PrintedOil {
 
 impl PrintedOil {
     /// Dynamic viscosity in Pa s.
-    pub fn dynamic_viscosity_pa_s(&self) -> f64 {
+    pub(crate) fn dynamic_viscosity_pa_s(&self) -> f64 {
         self.kinematic_viscosity_m2_s * self.density_kg_m3
     }
 }
@@ -259,17 +259,17 @@ pub struct Evidence {
 
 impl Evidence {
     /// The curve of a case.
-    pub fn curve(&self, case: &str) -> Option<&Curve> {
+    pub(crate) fn curve(&self, case: &str) -> Option<&Curve> {
         self.curves.iter().find(|curve| curve.case == case)
     }
 
     /// The liquid of a case.
-    pub fn oil(&self, case: &str) -> Option<&PrintedOil> {
+    pub(crate) fn oil(&self, case: &str) -> Option<&PrintedOil> {
         self.oils.iter().find(|oil| oil.case == case)
     }
 
     /// Wet over dry ToFs at the speeds that both curves have.
-    pub fn ratios(&self, case: &str) -> Vec<TofRatio> {
+    pub(crate) fn ratios(&self, case: &str) -> Vec<TofRatio> {
         let (Some(wet), Some(dry)) = (self.curve(case), self.curve("dry")) else {
             return Vec::new();
         };

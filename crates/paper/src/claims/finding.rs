@@ -38,7 +38,7 @@ pub struct Distance {
 
 impl ClaimFinding {
     /// By how much the number differs from what the paper has.
-    pub fn deviation(&self) -> Option<f64> {
+    pub(crate) fn deviation(&self) -> Option<f64> {
         self.expected.map(|expected| self.value - expected)
     }
 
@@ -77,7 +77,7 @@ impl ClaimFinding {
     }
 
     /// Whether more accurate numbers could say more.
-    pub fn is_open(&self) -> bool {
+    pub(crate) fn is_open(&self) -> bool {
         self.verdict != self.leaning
     }
 }

@@ -5,22 +5,25 @@
 //! the verdicts follow.
 
 mod claim;
-mod evidence;
-mod finding;
-mod predicates;
+pub(crate) mod evidence;
+pub(crate) mod finding;
+pub(crate) mod predicates;
 mod report;
 
-pub use self::{
+pub(crate) use self::{
     claim::{
-        Claim, ClaimError, EvaluatedClaim, Evaluator, Needs, Rounded, claims, evaluate_all,
+        Claim, ClaimError, Evaluator, Needs, Predicate, Rounded, evaluate_all,
         evaluate_all_rounded, read,
     },
-    evidence::{Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint, TofBranch},
-    predicates::find as predicate,
-    report::{MEANING, claims_markdown, computed_text},
+    evidence::{
+        Curve, Evidence, MeasuredKind, PrintedOil, SHOTS_PER_POINT, SPEED_SCATTER_M_S, ShotPoint,
+        TofBranch,
+    },
+    finding::{ClaimFinding, Comparisons, IN_PART},
+    report::{claims_json, claims_markdown, rounded_text, verdicts_text, with_unit},
 };
-pub(crate) use claim::Predicate;
-pub(crate) use evidence::{SHOTS_PER_POINT, SPEED_SCATTER_M_S};
-pub use finding::{ClaimFinding, ClaimVerdict, Distance};
-pub(crate) use finding::{Comparisons, IN_PART};
-pub(crate) use report::{claims_json, rounded_text, verdicts_text, with_unit};
+pub use self::{
+    claim::{EvaluatedClaim, claims},
+    finding::ClaimVerdict,
+    report::{MEANING, computed_text},
+};

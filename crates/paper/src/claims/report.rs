@@ -55,7 +55,7 @@ fn number(value: f64) -> Value {
 }
 
 /// The same as a page for people, below a head of its own.
-pub fn claims_markdown(evaluated: &[EvaluatedClaim], head: &str) -> String {
+pub(crate) fn claims_markdown(evaluated: &[EvaluatedClaim], head: &str) -> String {
     let mut page = format!("{head}\n\n{}\n\n", verdicts_text());
     let drawn = evaluated.iter().any(|evaluated| evaluated.rounded.is_some());
     let mut header = vec!["claim", "verdict", "computed", "needed"];

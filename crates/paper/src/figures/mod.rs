@@ -1,9 +1,9 @@
 //! The paper's figures and those of the claims about its rig.
 
-mod rig;
+pub(crate) mod rig;
 mod verdicts;
 
-pub use self::{rig::rig, verdicts::rig_figures};
+pub use verdicts::rig_figures;
 
 use crate::claims::{Curve, Evidence, SHOTS_PER_POINT, SPEED_SCATTER_M_S, TofBranch};
 use crate::reproduce::{Film, OILS, ReproduceError, Reproduction, SignalShot};
@@ -226,12 +226,14 @@ fn velocity_map(film: &Film, largest: f64) -> Chart {
     let (columns, rows) = (film.time_s.len(), film.velocity_m_s.len());
     let values: Vec<f64> = film.velocity_m_s.iter().flatten().copied().collect();
     let end = film.time_s.last().copied().unwrap_or(1.0) * US;
-    let map = HeatMap::new(columns, rows, &values)
-        .x_edges(0.0, end)
-        .y_edges(-0.5, rows as f64 - 0.5)
-        .limits(-largest, largest)
-        .colours(ColourMap::Diverging)
-        .label("Velocity (m/s)");
+    let map = HeatMap {
+        x_edges: (0.0, end),
+        y_edges: (-0.5, rows as f64 - 0.5),
+        limits: Some((-largest, largest)),
+        colours: ColourMap::Diverging,
+        label: "Velocity (m/s)".into(),
+        ..HeatMap::new(columns, rows, &values)
+    };
     let title = format!("{}, $v_0$ = {:.4} m/s", label(&film.case), film.speed_m_s);
     Chart::new("Time (µs)", "Bead (0: striker)").title(&title).heat(map)
 }

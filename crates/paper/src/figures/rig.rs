@@ -30,7 +30,7 @@ pub(super) fn figure(cases: &Cases) -> Result<Figure, ReproduceError> {
 ///
 /// # Errors
 /// A chain that can't be set up.
-pub fn rig(experiment: &Experiment) -> Result<RigDrawing, ReproduceError> {
+pub(crate) fn rig(experiment: &Experiment) -> Result<RigDrawing, ReproduceError> {
     let (chain, _warnings) = experiment.chain(None)?;
     let beads = chain.beads.len();
     let liquid = experiment.liquid().map(|liquid| unbroken(&liquid.name));

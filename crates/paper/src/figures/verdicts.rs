@@ -16,8 +16,10 @@ use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, VerdictM
 pub(super) fn readings(scan: &ReadingScan) -> Figure {
     let columns = columns(scan);
     let moved: Vec<&ReadingColumn> = columns.iter().filter(|c| c.is_shown(scan)).collect();
-    let names: Vec<&str> = moved.iter().map(|column| column.name.as_str()).collect();
-    let mut matrix = VerdictMatrix::new(&names);
+    let mut matrix = VerdictMatrix {
+        columns: moved.iter().map(|column| column.name.clone()).collect(),
+        ..VerdictMatrix::default()
+    };
     let mut fixed: [Vec<String>; 4] = Default::default();
     for (i, claim) in scan.claims.iter().enumerate() {
         let name = name(scan, i, &claim.id);
@@ -28,21 +30,21 @@ pub(super) fn readings(scan: &ReadingScan) -> Figure {
                     list.push(name);
                 }
             }
-            _ => matrix = matrix.row(&name, &verdicts),
+            _ => matrix.rows.push((name, verdicts)),
         }
     }
     for (verdict, claims) in ClaimVerdict::ALL.into_iter().zip(&fixed) {
         if !claims.is_empty() {
-            matrix = matrix.throughout(verdict, &format!("in all: {}", claims.join(", ")));
+            matrix.throughout.push((verdict, format!("in all: {}", claims.join(", "))));
         }
     }
     let unmoved = columns.iter().filter(|column| !column.is_shown(scan));
     let unmoved: Vec<&str> = unmoved.map(|column| column.name.as_str()).collect();
     if !unmoved.is_empty() {
-        matrix = matrix.note(&format!("As the default: {}.", unmoved.join("; ")));
+        matrix.notes.push(format!("As the default: {}.", unmoved.join("; ")));
     }
     if !scan.flipped_by_rounding.is_empty() {
-        matrix = matrix.note(&format!("{FLIPPED} {ROUNDING}"));
+        matrix.notes.push(format!("{FLIPPED} {ROUNDING}"));
     }
     matrix
         .figure()
@@ -138,18 +140,20 @@ pub fn rig_figures(evidence: &RigEvidence, claims: &RigClaims) -> Vec<(&'static 
 
 /// Claims against rigs.
 fn verdicts(claims: &RigClaims) -> Figure {
-    let names: Vec<&str> = claims.rigs.iter().map(|(rig, _)| &*rig.name).collect();
     let cell = |claim: usize| {
         let verdict = move |all: &[EvaluatedClaim]| all.get(claim).map(|own| own.verdict);
         move |(_, all): &(TriedRig, Vec<EvaluatedClaim>)| {
             verdict(all).unwrap_or(ClaimVerdict::NotDecidable)
         }
     };
-    let rows = claims.evaluated.iter().enumerate();
-    let matrix = rows.fold(VerdictMatrix::new(&names), |matrix, (at, evaluated)| {
-        let cells: Vec<ClaimVerdict> = claims.rigs.iter().map(cell(at)).collect();
-        matrix.row(&evaluated.claim.id.replace('-', " "), &cells)
+    let rows = claims.evaluated.iter().enumerate().map(|(at, evaluated)| {
+        (evaluated.claim.id.replace('-', " "), claims.rigs.iter().map(cell(at)).collect())
     });
+    let matrix = VerdictMatrix {
+        columns: claims.rigs.iter().map(|(rig, _)| rig.name.to_string()).collect(),
+        rows: rows.collect(),
+        ..VerdictMatrix::default()
+    };
     matrix.figure().title("What the paper says of its rig, on virtual ones")
 }
 

@@ -32,7 +32,7 @@ static OF_OIL: [&str; 7] = [
 /// How far the Poisson ratio 0.3 of the dry balls may be off: the paper prints
 /// one digit where handbooks have two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DryPoisson {
+pub(crate) enum DryPoisson {
     /// The handbooks' 0.30, within 0.005.
     TwoDigits,
     /// 0.3 to the letter, within 0.05.
@@ -42,7 +42,7 @@ pub enum DryPoisson {
 
 /// One draw of all printed constants.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Draw {
+pub(crate) struct Draw {
     /// Offsets from -1 to 1 in half units of the last digit: [`SHARED`], then each oil's own.
     offsets: Vec<f64>,
     dry_poisson: DryPoisson,
@@ -50,7 +50,7 @@ pub struct Draw {
 
 impl Draw {
     /// Draw `index` of a seed; each has a stream of its own.
-    pub fn new(seed: u64, index: u64, dry_poisson: DryPoisson) -> Self {
+    pub(crate) fn new(seed: u64, index: u64, dry_poisson: DryPoisson) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(index);
         let count = SHARED.len() + OILS.len() * OF_OIL.len();
@@ -62,7 +62,7 @@ impl Draw {
     ///
     /// # Errors
     /// A constant that leaves what a chain can have.
-    pub fn of(&self, case: &str, experiment: &Experiment) -> Result<Experiment, PathError> {
+    pub(crate) fn of(&self, case: &str, experiment: &Experiment) -> Result<Experiment, PathError> {
         let numbers = experiment.numbers();
         let drawn = numbers.iter().filter_map(|named| {
             Some((named.path.as_str(), named.value? + self.offset(case, named)?))

@@ -32,7 +32,7 @@ impl ReadingRow {
     }
 
     /// Claims met better, and worse, than in another reading, by index.
-    pub fn against(&self, other: &Self) -> (Vec<usize>, Vec<usize>) {
+    pub(crate) fn against(&self, other: &Self) -> (Vec<usize>, Vec<usize>) {
         let scores = self.verdicts.iter().zip(&other.verdicts).enumerate();
         let changes: Vec<(usize, f64)> =
             scores.map(|(i, (a, b))| (i, a.score() - b.score())).collect();
@@ -89,7 +89,7 @@ pub struct ReadingScan {
 ///
 /// # Errors
 /// The first shot that can't be computed.
-pub fn scan(
+pub(crate) fn scan(
     most: usize,
     speeds_m_s: &[f64],
     accuracy: f64,
@@ -156,7 +156,7 @@ impl ReadingScan {
     }
 
     /// Other readings that meet as many claims as the closest.
-    pub fn as_close(&self) -> Vec<&ReadingRow> {
+    pub(crate) fn as_close(&self) -> Vec<&ReadingRow> {
         let closest = self.closest();
         let mut found: Vec<&ReadingRow> = Vec::new();
         for row in self.rows() {
@@ -205,7 +205,7 @@ fn singles(from: &Reading) -> Vec<Reading> {
 }
 
 /// A switch with the options that move a verdict, the default first.
-pub type SwitchOptions = (&'static str, Vec<&'static str>);
+pub(crate) type SwitchOptions = (&'static str, Vec<&'static str>);
 
 /// Switches of the product, those that move most verdicts first, until the
 /// product would be too large; and those for which there was no room.

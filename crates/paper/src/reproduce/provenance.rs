@@ -42,7 +42,7 @@ pub struct Provenance {
 
 impl Provenance {
     /// As JSON, with the names of the run's files.
-    pub fn json(&self, files: &[&str]) -> Value {
+    pub(crate) fn json(&self, files: &[&str]) -> Value {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         let mut about = serde_json::to_value(self).unwrap_or_default();
         about["program"] = json!(PROGRAM);
@@ -108,15 +108,6 @@ pub trait ReproduceProgress: Sync {
     fn advance(&self);
     /// A note before a stage begins.
     fn note(&self, _text: &str) {}
-}
-
-/// Reports nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Silent;
-
-impl ReproduceProgress for Silent {
-    fn begin(&self, _stage: &str, _steps: u64) {}
-    fn advance(&self) {}
 }
 
 #[cfg(test)]

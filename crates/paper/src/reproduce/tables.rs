@@ -33,7 +33,7 @@ fn curves(evidence: &Evidence) -> impl Iterator<Item = &Curve> {
 }
 
 /// Times of flight and peaks, one row a shot.
-pub fn tof_csv(evidence: &Evidence) -> String {
+pub(crate) fn tof_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new(
         "case,speed_m_s,tof_incident_s,tof_reflected_s,sensor_peak_n,wall_peak_n,\
          returning_peak_n,striker_rebound_m_s,accuracy_reached",
@@ -132,7 +132,7 @@ pub(super) fn power_law_residuals_csv(evidence: &Evidence) -> String {
 ///
 /// # Errors
 /// A chain that can't be set up.
-pub fn oils_csv(cases: &Cases) -> Result<String, ReproduceError> {
+pub(crate) fn oils_csv(cases: &Cases) -> Result<String, ReproduceError> {
     let mut csv = TableText::new(
         "case,speed_m_s,kinematic_viscosity_m2_s,density_kg_m3,dynamic_viscosity_pa_s,\
          effective_young_modulus_pa,effective_poisson_ratio,effective_viscosity_pa_s,\

@@ -5,7 +5,7 @@ use hertzchain_sim::rig::RigError;
 
 /// Something that the paper does not state of its rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Factor {
+pub(crate) struct Factor {
     /// In words.
     pub name: &'static str,
     /// Its number in the experiment file.
@@ -23,7 +23,7 @@ pub struct Factor {
 /// All of them. Friction and push are tried at a quarter and four times of what
 /// the preset has, gaps at a tenth and ten times; radii spread by 0.02 %, as in a
 /// good lot of balls for bearings, and by ten times that.
-pub static FACTORS: [Factor; 4] = [
+pub(crate) static FACTORS: [Factor; 4] = [
     Factor {
         name: "friction",
         path: "track.friction",
@@ -67,12 +67,12 @@ const PRESSED_M: f64 = 2.4e-3;
 
 impl Factor {
     /// The level of the paper's preset, in SI.
-    pub fn usual(&self) -> f64 {
+    pub(crate) fn usual(&self) -> f64 {
         self.levels[self.usual]
     }
 
     /// A value in SI as it is shown: `friction 0.2`.
-    pub fn text(&self, value: f64) -> String {
+    pub(crate) fn text(&self, value: f64) -> String {
         format!("{} {}", self.name, self.amount(value))
     }
 
@@ -96,7 +96,7 @@ pub struct TriedRig {
 
 impl TriedRig {
     /// As the paper's preset.
-    pub fn usual() -> Self {
+    pub(crate) fn usual() -> Self {
         Self {
             name: "as the preset".to_owned(),
             values: FACTORS.map(|factor| factor.usual()),
@@ -105,12 +105,12 @@ impl TriedRig {
     }
 
     /// As the paper's preset, with another of its cases.
-    pub fn with_case(case: usize, name: &str) -> Self {
+    pub(crate) fn with_case(case: usize, name: &str) -> Self {
         Self { name: format!("as the preset, {name}"), case, ..Self::usual() }
     }
 
     /// As the preset but for one factor, by its place.
-    pub fn but(factor: usize, value: f64) -> Self {
+    pub(crate) fn but(factor: usize, value: f64) -> Self {
         let mut rig = Self::usual();
         if let (Some(factor), Some(at)) = (FACTORS.get(factor), rig.values.get_mut(factor)) {
             *at = value;

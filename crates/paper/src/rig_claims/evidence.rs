@@ -43,7 +43,7 @@ pub struct RigEvidence {
 
 impl RigEvidence {
     /// The evidence of each of the rigs alone.
-    pub fn alone(&self) -> impl Iterator<Item = Self> + '_ {
+    pub(crate) fn alone(&self) -> impl Iterator<Item = Self> + '_ {
         let all = self.rigs.iter().chain(&self.wet);
         all.map(|observed| Self { rigs: vec![observed.clone()], wet: Vec::new() })
     }
@@ -123,7 +123,7 @@ const SURE: f64 = 1.96;
 
 /// A number with the error that 95 % stay within.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WithError {
+pub(crate) struct WithError {
     /// The number.
     pub value: f64,
     /// Half of its 95 % interval.
@@ -148,7 +148,7 @@ pub(super) fn mean_of(values: &[f64]) -> WithError {
 
 /// ln of the geometric mean of a number that series have, with its error. Series
 /// whose number is none, having no pulses, count for nothing.
-pub fn typical(of_series: &[f64]) -> WithError {
+pub(crate) fn typical(of_series: &[f64]) -> WithError {
     let logs = of_series.iter().map(|v| v.ln());
     let logs: Vec<f64> = logs.filter(|log| log.is_finite()).collect();
     bootstrap(&logs, mean)

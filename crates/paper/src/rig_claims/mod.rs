@@ -11,11 +11,14 @@ mod predicates;
 mod report;
 
 pub use self::{
-    design::{FACTORS, Factor, RigDesign, TriedRig},
-    evidence::{Observed, RigEvidence, SpeedSeries, WithError, observe, typical},
+    design::RigDesign,
+    evidence::observe,
+    report::{MEANING, RigClaims, series_csv},
 };
-pub(crate) use evidence::{mean, rebound_m_s, spread_s};
-pub use report::{MEANING, RigClaims, series_csv};
+pub(crate) use self::{
+    design::{FACTORS, TriedRig},
+    evidence::{Observed, RigEvidence, SpeedSeries, mean, rebound_m_s, spread_s, typical},
+};
 
 use crate::claims::{ClaimError, Evaluator, read};
 

@@ -1,9 +1,9 @@
 //! Every number that decides a claim is as accurate as it says.
 
-use crate::agreeing::agreeing;
-use crate::breaks::{BREAKS, each};
-use crate::{decide, dry};
-use hertzchain_paper::claims::{ClaimVerdict, Evidence, ShotPoint, claims};
+use super::agreeing::agreeing;
+use super::breaks::{BREAKS, each};
+use super::{decide, dry};
+use crate::claims::{ClaimVerdict, Evidence, ShotPoint, claims};
 
 /// The numbers as made up and after every change that breaks a claim.
 fn all_evidence() -> Vec<Evidence> {

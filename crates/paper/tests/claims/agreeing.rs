@@ -1,7 +1,7 @@
 //! Numbers made up so that everything the paper says is true.
 
-use hertzchain_paper::claims::{
-    Curve, Digitised, Evidence, MeasuredKind, PrintedOil, ShotPoint, TofBranch,
+use crate::claims::{
+    Curve, Evidence, MeasuredKind, PrintedOil, ShotPoint, TofBranch, evidence::Digitised,
 };
 
 /// Speeds in m/s.

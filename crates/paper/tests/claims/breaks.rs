@@ -1,7 +1,7 @@
 //! Changes of the numbers that claims must not survive.
 
-use crate::agreeing::dry;
-use hertzchain_paper::claims::{Evidence, ShotPoint};
+use super::agreeing::dry;
+use crate::claims::{Evidence, ShotPoint};
 
 /// Changes all points of a case.
 pub fn each(evidence: &mut Evidence, case: &str, change: impl Fn(&mut ShotPoint)) {

@@ -3,7 +3,8 @@
 //! A recording is there whole or not at all. A file beside the recordings holds the experiment
 //! and a fingerprint of all that they follow from.
 
-use crate::rig::{Converter, MeasuredShot, Plan, RigError, Series, run_series};
+use crate::rig::instruments::Converter;
+use crate::rig::{MeasuredShot, Plan, RigError, Series, run_series};
 use crate::{Fingerprint, Inputs, Shard, commit};
 use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_measure::records::{
@@ -301,7 +302,7 @@ pub fn plan_of_folder(path: &Path) -> Result<Plan, RigError> {
 }
 
 /// True values of a shot, by name; the endings are the units.
-pub type Truth = Vec<(&'static str, f64)>;
+pub(crate) type Truth = Vec<(&'static str, f64)>;
 
 /// Makes a list of true values with their descriptions in recordings, and what computes them.
 macro_rules! truths {
@@ -312,7 +313,7 @@ macro_rules! truths {
         ];
 
         /// What only a simulation knows of a shot.
-        pub fn truth($measured: &MeasuredShot) -> Truth {
+        pub(crate) fn truth($measured: &MeasuredShot) -> Truth {
             vec![$((stringify!($name), $value)),*]
         }
     };

@@ -72,7 +72,7 @@ const SLOWEST_SHARE: f64 = 0.1;
 ///
 /// # Errors
 /// [`RigError::Speed`] for a speed outside the actuator's range.
-pub fn programmed(actuator: &Actuator, asked_m_s: f64) -> Result<f64, RigError> {
+pub(crate) fn programmed(actuator: &Actuator, asked_m_s: f64) -> Result<f64, RigError> {
     let (least_m_s, most_m_s) = (actuator.least_speed_m_s, actuator.most_speed_m_s);
     if !(least_m_s..=most_m_s).contains(&asked_m_s) {
         return Err(RigError::Speed(format!(
@@ -83,7 +83,11 @@ pub fn programmed(actuator: &Actuator, asked_m_s: f64) -> Result<f64, RigError> 
 }
 
 /// Draws the true speed of one shot in m/s: programmed + spread · normal.
-pub fn true_speed_m_s(actuator: &Actuator, programmed_m_s: f64, random: &mut RandomStream) -> f64 {
+pub(crate) fn true_speed_m_s(
+    actuator: &Actuator,
+    programmed_m_s: f64,
+    random: &mut RandomStream,
+) -> f64 {
     let speed = programmed_m_s + actuator.spread_m_s * random.normal();
     let slowest_m_s = SLOWEST_SHARE * actuator.least_speed_m_s;
     // Not `max`, which would turn NaN into a speed.
@@ -95,7 +99,7 @@ pub fn true_speed_m_s(actuator: &Actuator, programmed_m_s: f64, random: &mut Ran
 
 /// What the photogate measures of one shot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GateReading {
+pub(crate) struct GateReading {
     /// Measured speed in m/s.
     pub speed_m_s: f64,
     /// When the striker passed, in s before the first touch: negative.
@@ -104,7 +108,7 @@ pub struct GateReading {
 
 impl GateReading {
     /// Reads a striker of this true speed whose way to bead 1 is longer by `misplaced_m`.
-    pub fn new(
+    pub(crate) fn new(
         gate: &Photogate,
         speed_m_s: f64,
         misplaced_m: f64,
@@ -119,7 +123,7 @@ impl GateReading {
 /// A converter of up to 16 bits. Its readings stand at the upper end of 16 bits, as DAQ cards
 /// deliver them, whatever its own number of bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Converter {
+pub(crate) struct Converter {
     volts_per_reading: f64,
     /// Counts of a 16-bit reading that one reading of this converter is.
     stride: i32,
@@ -130,7 +134,7 @@ pub struct Converter {
 
 impl Converter {
     /// Returns the converter of a recorder.
-    pub fn new(recorder: &Recorder) -> Self {
+    pub(crate) fn new(recorder: &Recorder) -> Self {
         let bits = recorder.bits.clamp(2, 16);
         let half = f64::from(1u32 << (bits - 1));
         Self {
@@ -145,7 +149,7 @@ impl Converter {
     /// Returns the reading of a signal in V: with the offset, rounded to the nearest, cut at
     /// both ends of the range.
     #[inline]
-    pub fn reading(&self, signal_v: f64) -> i16 {
+    pub(crate) fn reading(&self, signal_v: f64) -> i16 {
         let found = (signal_v + self.offset_v) / self.volts_per_reading;
         let cut = found.round_ties_even().clamp(self.least, self.most);
         // Within 16 bits by the limits; NaN becomes 0.
@@ -153,7 +157,7 @@ impl Converter {
     }
 
     /// Returns the volts of one count of the 16-bit reading.
-    pub fn volts_per_count(&self) -> f64 {
+    pub(crate) fn volts_per_count(&self) -> f64 {
         self.volts_per_reading / f64::from(self.stride)
     }
 }

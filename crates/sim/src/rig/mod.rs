@@ -26,16 +26,16 @@ mod recorder;
 mod shot;
 
 pub use self::{
-    campaign::{
-        CAMPAIGN_FILE, Done, Merged, Progress, Truth, campaign, merge, plan_of_folder, truth,
-    },
+    campaign::{CAMPAIGN_FILE, Done, Merged, Progress, campaign, merge, plan_of_folder},
     error::RigError,
     forecast::forecast,
-    instruments::{
-        Amplifier, Converter, GateReading, Purpose, RandomStream, programmed, true_speed_m_s,
-    },
+    instruments::{Amplifier, Purpose, RandomStream},
     plan::{Case, Plan, Series},
-    recorder::{ForceTrace, Record, Window},
-    shot::{Bench, MeasuredShot, Shot, run_series, shoot},
+    recorder::Record,
+    shot::{MeasuredShot, Shot, run_series},
 };
 pub use crate::Shard;
+
+#[cfg(test)]
+#[path = "../../tests/rig/main.rs"]
+mod tests;

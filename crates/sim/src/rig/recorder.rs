@@ -1,6 +1,6 @@
 //! From forces to a record: force trace, amplifier, trigger, noise, converter.
 
-use crate::rig::{Amplifier, Converter, RandomStream};
+use crate::rig::instruments::{Amplifier, Converter, RandomStream};
 use hertzchain_chain::Sensor;
 use hertzchain_chain::wave::{Flow, Observer, Piece};
 use hertzchain_experiment::{Amplifier as AmplifierSettings, Channels, Recorder, Trigger};
@@ -15,7 +15,7 @@ const TRIGGER_WITHIN_S: f64 = 0.02;
 
 /// Forces in N of sensor bead and wall at equal times; none before the first touch at t = 0.
 #[derive(Clone, Debug)]
-pub struct ForceTrace {
+pub(crate) struct ForceTrace {
     start_s: f64,
     interval_s: f64,
     length: usize,
@@ -43,7 +43,7 @@ impl ForceTrace {
     }
 
     /// Appends forces at a time in s, with straight lines from the time before.
-    pub fn push(&mut self, time_s: f64, forces_n: [f64; 2]) {
+    pub(crate) fn push(&mut self, time_s: f64, forces_n: [f64; 2]) {
         let (before_s, before_n) = self.last;
         while let Some(next_s) = self.next_s().filter(|next_s| *next_s <= time_s) {
             let whole = time_s - before_s;
@@ -88,7 +88,7 @@ impl Observer for TraceObserver<'_> {
 
 /// When the samples of a shot are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
+pub(crate) struct Window {
     start_s: f64,
     interval_s: f64,
     samples: usize,
@@ -111,7 +111,7 @@ pub struct Record {
 impl Window {
     /// Returns the window of a shot whose striker passed the gate at this time in s, 0 being
     /// the touch. The phase of the sampling clock is random.
-    pub fn new(recorder: &Recorder, gate_s: f64, random: &mut RandomStream) -> Self {
+    pub(crate) fn new(recorder: &Recorder, gate_s: f64, random: &mut RandomStream) -> Self {
         let interval_s = recorder.sampling_hz.recip();
         let samples = recorder.samples();
         let before = (recorder.before_s * recorder.sampling_hz).round() as usize;
@@ -130,13 +130,13 @@ impl Window {
     }
 
     /// Returns an empty force trace for the whole window.
-    pub fn trace(&self) -> ForceTrace {
+    pub(crate) fn trace(&self) -> ForceTrace {
         let length = (self.samples + self.spare).max(1) * DENSER;
         ForceTrace::new(self.start_s, self.interval_s / DENSER as f64, length)
     }
 
     /// Returns the record of a force trace.
-    pub fn record(
+    pub(crate) fn record(
         &self,
         trace: ForceTrace,
         amplifier: &AmplifierSettings,

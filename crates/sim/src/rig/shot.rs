@@ -26,7 +26,7 @@ const LONGEST_WAVE_S: f64 = 0.02;
 
 /// An assembled chain with the state in which the last impact has left it.
 #[derive(Clone, Debug)]
-pub struct Bench<'a> {
+pub(crate) struct Bench<'a> {
     experiment: &'a Experiment,
     /// Radii of all beads over the file's.
     sizes: Vec<f64>,
@@ -41,7 +41,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// A chain that can't be built or does not come to rest.
-    pub fn assemble(
+    pub(crate) fn assemble(
         experiment: &'a Experiment,
         random: &mut RandomStream,
     ) -> Result<Self, StudyError> {
@@ -72,7 +72,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// A chain that does not come to rest.
-    pub fn tap(&mut self, speed_m_s: f64) -> Result<Rest, StudyError> {
+    pub(crate) fn tap(&mut self, speed_m_s: f64) -> Result<Rest, StudyError> {
         self.state.strike(&self.tapped, speed_m_s);
         let rest = settle(&self.tapped, &mut self.state, &self.slow, &mut |_, _, _| {})?;
         self.hold_wall();
@@ -84,7 +84,7 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     /// A chain that can't be built at this speed.
-    pub fn systems(&self, speed_m_s: f64) -> Result<(System, System), StudyError> {
+    pub(crate) fn systems(&self, speed_m_s: f64) -> Result<(System, System), StudyError> {
         let system = System::new(&chain(self.experiment, &self.sizes, speed_m_s)?)?;
         let mut state = self.state.clone();
         state.strike(&system, speed_m_s);
@@ -108,14 +108,14 @@ impl<'a> Bench<'a> {
     }
 
     /// Gaps in m of contacts 1..=N; 0 where closed.
-    pub fn gaps_m(&self) -> Vec<f64> {
+    pub(crate) fn gaps_m(&self) -> Vec<f64> {
         let overlap_m = |contact| self.state.overlap_m(&self.tapped, contact);
         let gap_m = |contact| (-overlap_m(contact)).max(0.0);
         (1..self.tapped.contacts()).map(gap_m).collect()
     }
 
     /// Positions and velocities of all bodies.
-    pub fn state(&self) -> &State {
+    pub(crate) fn state(&self) -> &State {
         &self.state
     }
 
@@ -172,7 +172,7 @@ pub struct Shot {
 ///
 /// # Errors
 /// A shot that can't be computed.
-pub fn shoot(
+pub(crate) fn shoot(
     bench: &mut Bench<'_>,
     sensor_bead: usize,
     speed_m_s: f64,

@@ -1,7 +1,7 @@
 //! The charge amplifier against closed forms.
 
+use crate::rig::Amplifier;
 use hertzchain_experiment::{Amplifier as Numbers, LowPass, LowPassKind};
-use hertzchain_sim::rig::Amplifier;
 use std::f64::consts::{SQRT_2, TAU};
 
 const INTERVAL_S: f64 = 1e-6;

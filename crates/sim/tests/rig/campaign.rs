@@ -1,8 +1,8 @@
 //! Campaigns: files that depend on nothing but their inputs.
 
-use crate::small::{TEXT, experiment, plan};
+use super::small::{TEXT, experiment, plan};
+use crate::rig::{Plan, Progress, RigError, Shard, campaign};
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::rig::{Plan, Progress, RigError, Shard, campaign};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;

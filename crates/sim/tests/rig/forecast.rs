@@ -1,7 +1,7 @@
 //! What a recorder will not see is reported before a campaign.
 
-use crate::small::{experiment, plan, shots};
-use hertzchain_sim::rig::{Plan, RigError, forecast};
+use super::small::{experiment, plan, shots};
+use crate::rig::{Plan, RigError, forecast};
 
 #[test]
 fn a_recorder_that_sees_all_is_told_nothing() {

@@ -1,11 +1,10 @@
 //! Striker, photogate and converter keep what their numbers promise.
 
+use crate::rig::instruments::{Converter, GateReading, programmed, true_speed_m_s};
+use crate::rig::{Plan, Purpose, RandomStream, RigError};
 use hertzchain_experiment::{Actuator, Photogate, Recorder, preset};
-use hertzchain_sim::rig::{
-    Converter, GateReading, Plan, Purpose, RandomStream, RigError, programmed, true_speed_m_s,
-};
 
-use crate::small;
+use super::small;
 
 fn actuator() -> Actuator {
     preset("dry").unwrap().campaign().actuator

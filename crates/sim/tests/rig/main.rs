@@ -1,8 +1,11 @@
 //! The virtual rig.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
+use crate::rig;
+
 mod amplifier;
 mod campaign;
+mod departures;
 mod forecast;
 mod instruments;
 mod poisoned;

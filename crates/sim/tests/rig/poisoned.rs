@@ -1,7 +1,7 @@
 //! Series that can't be computed, and parts that are put together.
 
-use crate::small::plan;
-use hertzchain_sim::rig::{RigError, Shard, campaign, merge, plan_of_folder, run_series};
+use super::small::plan;
+use crate::rig::{RigError, Shard, campaign, merge, plan_of_folder, run_series};
 use std::fs;
 
 #[test]
@@ -15,7 +15,7 @@ fn a_poisoned_series_is_told_and_stops_no_other() {
     let done = campaign(&poisoned, &out, Shard::WHOLE, &|_| {}).unwrap();
     assert_eq!((done.run, done.failed.len()), (sound.series.len() - 1, 1));
     assert!(done.failed[0].contains(&sound.series[1].name), "{:?}", done.failed);
-    let there = |plan: &hertzchain_sim::rig::Plan| {
+    let there = |plan: &crate::rig::Plan| {
         let file = |name: &str| out.join(format!("{name}.h5")).is_file();
         plan.series.iter().map(|series| file(&series.name)).collect::<Vec<bool>>()
     };

@@ -1,7 +1,8 @@
 //! What the recorder stores of forces that are known.
 
+use crate::rig::recorder::Window;
+use crate::rig::{Purpose, RandomStream, Record};
 use hertzchain_experiment::{Amplifier, LowPass, LowPassKind, Recorder, Trigger, preset};
-use hertzchain_sim::rig::{Purpose, RandomStream, Record, Window};
 
 fn amplifier() -> Amplifier {
     Amplifier {

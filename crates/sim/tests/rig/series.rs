@@ -1,13 +1,14 @@
 //! Series: motion carried from impact to impact.
 
-use crate::small::{SAME_SPEED, plan, shots};
+use super::small::{SAME_SPEED, plan, shots};
+use crate::rig::instruments::programmed;
+use crate::rig::recorder::Window;
+use crate::rig::shot::{Bench, shoot};
+use crate::rig::{MeasuredShot, Plan, Purpose, RandomStream};
 use hertzchain_chain::observe::Passages;
 use hertzchain_chain::settle::State;
 use hertzchain_chain::wave::{self, Limits, Method};
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::rig::{
-    Bench, MeasuredShot, Plan, Purpose, RandomStream, Window, programmed, shoot,
-};
 
 /// By how much a series' times of flight in s are longer on another rig, shot by shot.
 fn longer_s(other: &Plan, series: usize, of: fn(&MeasuredShot) -> f64) -> Vec<f64> {

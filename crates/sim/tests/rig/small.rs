@@ -1,7 +1,7 @@
 //! A campaign small enough for tests: 12 beads, two cases, three speeds.
 
+use super::rig::{MeasuredShot, Plan, run_series};
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::rig::{MeasuredShot, Plan, run_series};
 
 pub const TEXT: &str = include_str!("../small.toml");
 

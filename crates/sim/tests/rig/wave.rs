@@ -1,9 +1,9 @@
 //! How well the wave of a shot is followed.
 
-use crate::small::shots;
+use super::small::shots;
+use crate::rig::{MeasuredShot, Plan};
+use crate::{Batch, BatchOptions, Shard};
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::rig::{MeasuredShot, Plan};
-use hertzchain_sim::{Batch, BatchOptions, Shard};
 
 /// The paper's rig, its chains laid compact and not pushed: at rest they are in equilibrium.
 const COMPACT: [(&str, &str); 8] = [

@@ -155,19 +155,9 @@ impl<'shape> SolitaryWave<'shape> {
         scale * self.shape.velocity(position_beads)
     }
 
-    /// Force of the contact that the centre passes at time 0, N, at `time_s`.
-    pub fn force_at_time_n(&self, time_s: f64) -> f64 {
-        self.force_n(-self.speed_beads_s() * time_s)
-    }
-
     /// Full width at half maximum of a contact's force in time, s.
     pub fn force_width_s(&self) -> f64 {
         self.shape.force_width_beads() / self.speed_beads_s()
-    }
-
-    /// Full width of a bead sensor's signal in time at half its central value, s.
-    pub fn sensor_width_s(&self) -> f64 {
-        self.shape.sensor_width_beads() / self.speed_beads_s()
     }
 
     /// Time the wave takes over `distance_beads`, s.

@@ -24,3 +24,11 @@ fn a_motion_that_is_not_finite_says_when_where_why_and_what_to_do() {
         assert!(text.contains(part), "{part} is missing: {text}");
     }
 }
+
+#[test]
+fn a_step_too_small_is_the_contacts_or_the_resolution_of_times() {
+    let text = |time_s| SolveError::StepTooSmall { time_s, step_s: 1e-15, contact: 3 }.to_string();
+    assert!(text(1e-3).contains("because of contact 3"), "{}", text(1e-3));
+    assert!(text(40.0).contains("double precision"), "{}", text(40.0));
+    assert!(!text(40.0).contains("contact"), "{}", text(40.0));
+}

@@ -19,7 +19,9 @@ fn page_holds_no_reference_to_anything_outside() {
 
 #[test]
 fn units_are_those_asked_for() {
-    let page = moving(3, 4).units((1.0, ""), "").html();
+    let plain = moving(3, 4);
+    let page =
+        Animation { time_unit: (1.0, String::new()), force_unit: String::new(), ..plain }.html();
     assert!(page.contains(r#""timeUnit":"""#) && page.contains(r#""forceUnit":"""#));
     assert!(!page.contains("µs"));
 }
@@ -27,7 +29,7 @@ fn units_are_those_asked_for() {
 #[test]
 fn a_title_that_looks_like_a_part_of_the_page_stays_a_title() {
     let title = "@SCRIPT@ and @TITLE@ and \"@DATA@\"";
-    let page = moving(2, 3).title(title).html();
+    let page = Animation { title: title.into(), ..moving(2, 3) }.html();
     let shown = crate::draw::escape(title);
     assert_eq!(page.matches(&shown).count(), 2, "{page}");
     assert_eq!(page.matches("const data =").count(), 1);
@@ -35,7 +37,12 @@ fn a_title_that_looks_like_a_part_of_the_page_stays_a_title() {
 
 #[test]
 fn names_cannot_break_out_of_the_script() {
-    let page = moving(2, 3).mark(0, "</script><b>\"x\\").title("<i>").html();
+    let page = Animation {
+        title: "<i>".into(),
+        marks: vec![(0, "</script><b>\"x\\".into())],
+        ..moving(2, 3)
+    }
+    .html();
     assert_eq!(page.matches("</script>").count(), 1);
     assert!(!page.contains("<i>"));
 }

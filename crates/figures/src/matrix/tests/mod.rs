@@ -11,9 +11,9 @@ fn verdicts_differ_in_lightness_for_grey_print() {
 #[test]
 fn a_table_grows_with_its_rows() {
     let table = |rows: usize| {
-        let empty = VerdictMatrix::new(&["a", "b"]);
-        let full = (0..rows).fold(empty, |m, _| m.row("claim", &[ClaimVerdict::Holds]));
-        full.figure().height_mm
+        let rows = vec![("claim".into(), vec![ClaimVerdict::Holds]); rows];
+        let columns = vec!["a".into(), "b".into()];
+        VerdictMatrix { columns, rows, ..VerdictMatrix::default() }.figure().height_mm
     };
     assert!(table(20) > table(10));
 }

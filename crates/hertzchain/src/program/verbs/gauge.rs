@@ -49,7 +49,7 @@ fn write(
 ) -> Result<(), Failure> {
     folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
     folder.tables(&gauge::tables(run_gauge))?;
-    if run_gauge.form.is_some() || run_gauge.rows.iter().any(|row| row.contact.is_ok()) {
+    if run_gauge.rows.iter().any(|row| row.contact.is_ok()) {
         folder.figure("contacts", &pictures::contacts(run_gauge))?;
     }
     print::written(&folder.finish()?);

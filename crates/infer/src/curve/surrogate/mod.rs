@@ -86,7 +86,7 @@ impl Surrogate {
     pub const MOST_PARAMETERS: usize = polynomial::MOST_PARAMETERS;
 
     /// Largest error of a surrogate that may stand for the model, in standard errors.
-    pub const ALLOWED: f64 = 0.1;
+    const ALLOWED: f64 = 0.1;
 
     /// Around a fit, six standard errors to either side. Up to four parameters have a
     /// grid; more, or those for which a grid is too coarse, a polynomial of least
@@ -140,7 +140,7 @@ impl Surrogate {
     ///
     /// # Errors
     /// See [`InferError`].
-    pub fn by_least_squares(
+    fn by_least_squares(
         problem: &CurveProblem,
         fit: &Fit,
         covariance: &Covariance,

@@ -53,7 +53,7 @@ pub(super) static OF_THE_END: [&str; 2] = ["gaps-open", "no-rebound"];
 pub(super) const CLOSING: &str = "closing-gaps-shortens-return";
 
 /// A predicate on single shots by its name.
-pub fn find(name: &str) -> Option<Predicate<Evidence>> {
+pub(crate) fn find(name: &str) -> Option<Predicate<Evidence>> {
     let row = PREDICATES.iter().find(|(known, _)| *known == name);
     row.map(|(_, predicate)| *predicate)
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::claims::{ClaimVerdict, Curve, Digitised, MeasuredKind, ShotPoint, claims};
+use crate::claims::{ClaimVerdict, Curve, MeasuredKind, ShotPoint, claims, evidence::Digitised};
 use std::cell::RefCell;
 
 /// A peak whose difference from a measured one is this many standard errors,

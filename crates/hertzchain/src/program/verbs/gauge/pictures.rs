@@ -2,10 +2,7 @@
 
 use crate::gauge::GaugeResult;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series, case_look};
-use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, PowerForm, is_determined};
-
-/// Half-width of the band around power laws in standard errors: 95 %.
-const BAND: f64 = 1.96;
+use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, is_determined};
 
 /// Speeds at which an oil's curve is drawn.
 const POINTS: usize = 60;
@@ -26,12 +23,12 @@ pub(super) fn contacts(run_gauge: &GaugeResult) -> Figure {
     }
 }
 
-/// Whether any row, or power laws of the whole curve, determine both K and A. If none does, an
-/// oil's K is another quantity than what was measured.
+/// Whether any row determines both K and A. If none does, an oil's K is another quantity than what
+/// was measured.
 fn has_both(run_gauge: &GaugeResult) -> bool {
     let both = |contact: &Contact| contact.combination.is_none();
     let mut reported = run_gauge.rows.iter().filter_map(|row| row.contact.as_ref().ok());
-    run_gauge.form.is_some() || reported.any(both)
+    reported.any(both)
 }
 
 fn panel(run_gauge: &GaugeResult, of: usize, label: &str, unit: f64) -> Chart {
@@ -45,18 +42,9 @@ fn panel(run_gauge: &GaugeResult, of: usize, label: &str, unit: f64) -> Chart {
     let oils = run_gauge.oils.iter().take(shown).enumerate();
     let chart =
         oils.fold(chart, |chart, (at, oil)| chart.with(curve(run_gauge, (at, oil), of, unit)));
-    let chart = run_gauge.form.iter().fold(chart, |chart, form| {
-        let speeds = speeds(run_gauge);
-        let law = |sds: f64| moved_law(form, &speeds, of, unit, sds);
-        let band = Series::band("", &speeds, &law(-BAND), &law(BAND)).colour(Colour::BLACK);
-        let line = Series::line("power laws", &speeds, &law(0.0)).colour(Colour::BLACK);
-        chart.with(band).with(line)
-    });
     let known = run_gauge.rows.iter().filter_map(|row| {
         let contact = row.contact.as_ref().ok()?;
-        // The K of a combination is not that of a law.
-        let is_combined = run_gauge.form.is_some() && contact.combination.is_some();
-        if contact.branch == Branch::Unknown || is_combined {
+        if contact.branch == Branch::Unknown {
             return None;
         }
         let (value, sd) = contact.first.estimates()[of];
@@ -91,27 +79,18 @@ fn panel(run_gauge: &GaugeResult, of: usize, label: &str, unit: f64) -> Chart {
 
 /// Speeds in m/s at which lines are drawn.
 fn speeds(run_gauge: &GaugeResult) -> Vec<f64> {
-    let speeds = run_gauge.gauge.wet().speeds_m_s();
+    let speeds = run_gauge.gauge.data.speeds_m_s();
     let first = speeds.first().copied().unwrap_or(0.1);
     let last = speeds.last().copied().unwrap_or(1.0);
     let speed = |at: usize| first * (last / first).powf(at as f64 / (POINTS - 1) as f64);
     (0..POINTS).map(speed).collect()
 }
 
-/// K or A by a power law of the whole curve, moved by a number of its standard errors.
-fn moved_law(form: &PowerForm, speeds: &[f64], of: usize, unit: f64, sds: f64) -> Vec<f64> {
-    let value = |speed: &f64| {
-        let at = form.at(*speed);
-        unit * (at.ln[of] + sds * at.ln_sd[of]).exp()
-    };
-    speeds.iter().map(value).collect()
-}
-
 /// What an oil would give.
 fn curve(run_gauge: &GaugeResult, (number, oil): (usize, &Oil), of: usize, unit: f64) -> Series {
     let speeds = speeds(run_gauge);
     let value = |speed: &f64| {
-        let (k, a) = oil.contact(run_gauge.gauge.wet_radius_m(), *speed);
+        let (k, a) = oil.contact(run_gauge.gauge.radius_m, *speed);
         unit * [k, a][of]
     };
     let values: Vec<f64> = speeds.iter().map(value).collect();

@@ -6,13 +6,13 @@ use crate::program::format::{self, digits, with_error};
 use crate::program::print::heading;
 use crate::program::words::{chi_square_text, estimate, lines, misfit, percent};
 use hertzchain_infer::Problem;
-use hertzchain_infer::gauge::{Contact, NEVER, Pair, PowerForm, SharedLaw, WetRow, is_determined};
+use hertzchain_infer::gauge::{Contact, NEVER, Pair, WetRow, is_determined};
 
 /// Everything that is to be said.
 pub(super) fn text(run_gauge: &GaugeResult) -> String {
     let doubts = doubts(run_gauge);
     let mut text = doubts.clone();
-    let (dry_model, wet_model) = (run_gauge.gauge.dry().model(), run_gauge.gauge.wet_model());
+    let (dry_model, wet_model) = (run_gauge.gauge.dry.model(), &run_gauge.gauge.wet);
     text += &format!(
         "{}\n{}{}\n",
         heading("Dry contacts"),
@@ -25,14 +25,7 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
         contacts(run_gauge),
         lines(references(wet_model))
     );
-    if let Some(laws) = &run_gauge.laws {
-        text += &law("K", "N/m^1.5", &laws.stiffness);
-        text += &law("A", "s", &laws.relaxation);
-    }
-    if let Some(form) = &run_gauge.form {
-        text += &power_laws(form, &run_gauge.gauge.wet().speeds_m_s());
-    }
-    if let Some(add) = run_gauge.to_add() {
+    if let Some(add) = run_gauge.gauge.to_add() {
         text += &format!(
             "One number a speed determines one combination of K and A. To determine both, {add}.\n"
         );
@@ -40,11 +33,7 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
     text += &held_numbers(run_gauge);
     text +=
         &run_gauge.gauge.ambiguous(&run_gauge.rows).map_or(String::new(), |why| format!("{why}\n"));
-    let oils = match run_gauge.form.as_ref().is_some_and(PowerForm::is_sufficient) {
-        true => "Known oils, by the power laws that each would give",
-        false => "Known oils",
-    };
-    text += &format!("\n{}\n{}", heading(oils), matches(run_gauge));
+    text += &format!("\n{}\n{}", heading("Known oils"), matches(run_gauge));
     for (oil, why) in &run_gauge.verdict.failed {
         text += &format!("{oil} can't be computed: {why}\n");
     }
@@ -60,7 +49,7 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
 fn doubts(run_gauge: &GaugeResult) -> String {
     let dry = misfit(&run_gauge.gauge.dry_goodness())
         .map(|reported| format!("of the dry curve, on which all below rests, {reported}."));
-    let all = dry.into_iter().chain(run_gauge.doubts());
+    let all = dry.into_iter().chain(run_gauge.gauge.doubts(&run_gauge.verdict));
     let lines: String = all.map(|doubt| format!("warning: {doubt}\n")).collect();
     match lines.is_empty() {
         true => lines,
@@ -70,7 +59,7 @@ fn doubts(run_gauge: &GaugeResult) -> String {
 
 fn dry(run_gauge: &GaugeResult) -> String {
     let gauge = &run_gauge.gauge;
-    let parameters = gauge.dry().parameters().iter().enumerate();
+    let parameters = gauge.dry.parameters().iter().enumerate();
     let rows = parameters.map(|(at, parameter)| {
         let (value, sd) = (gauge.dry_fit.point[at], gauge.dry_covariance.sd[at]);
         (parameter.name.clone(), estimate(parameter, value, sd))
@@ -137,56 +126,6 @@ fn contacts(run_gauge: &GaugeResult) -> String {
     let cut = |row: &Vec<String>| row.iter().take(shown).cloned().collect::<Vec<_>>();
     let rows: Vec<Vec<String>> = rows.iter().map(cut).collect();
     format::table(&cut(&head.map(str::to_owned).to_vec()), &rows)
-}
-
-/// Reduced chi-square from which values are said to follow no power law.
-const NO_LAW: f64 = 2.0;
-
-fn law(name: &str, unit: &str, law: &SharedLaw) -> String {
-    let prefactor = law.law.prefactor;
-    let relative = percent(law.ln_prefactor_sd);
-    let (exponent, error) = with_error(law.law.exponent, law.exponent_sd);
-    let fits = match law.reduced_chi_square > NO_LAW {
-        true => {
-            format!("; the values do not follow it (χ²/ν = {})", digits(law.reduced_chi_square, 2))
-        }
-        false => String::new(),
-    };
-    format!(
-        "{name} = {} {unit} (± {relative}) · v^({exponent} ± {error}){fits}\n",
-        digits(prefactor, 4)
-    )
-}
-
-/// Power laws of the whole curve, and K and A by them at its speeds.
-fn power_laws(form: &PowerForm, speeds_m_s: &[f64]) -> String {
-    let sd = form.sd();
-    let law = |name: &str, unit: &str, at: usize| {
-        let prefactor = digits(form.values[at].exp(), 4);
-        let relative = match sd[at].is_finite() {
-            true => percent(sd[at]),
-            false => "not determined".to_owned(),
-        };
-        let (exponent, error) = with_error(form.values[at + 1], sd[at + 1]);
-        format!("{name} = {prefactor} {unit} (± {relative}) · v^({exponent} ± {error})\n")
-    };
-    let chi_square = form.chi_square.map(|found| chi_square_text(found) + "\n");
-    let open = form.undetermined.iter();
-    let open: String = open.map(|words| format!("  Not determined: {words}.\n")).collect();
-    let row = |speed: &f64| {
-        let [(k, k_sd), (a, a_sd)] = form.at(*speed).estimates();
-        vec![digits(*speed, 4), reported(1e-9 * k, 1e-9 * k_sd), reported(1e9 * a, 1e9 * a_sd)]
-    };
-    let rows: Vec<Vec<String>> = speeds_m_s.iter().map(row).collect();
-    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)"].map(str::to_owned);
-    format!(
-        "\n{}\n{}{}{}{open}{}",
-        heading("Wet contacts as power laws of speed, fitted to both curves"),
-        law("K", "N/m^1.5", 0),
-        law("A", "s", 2),
-        chi_square.unwrap_or_default(),
-        format::table(&head, &rows)
-    )
 }
 
 /// What K and A take for granted.

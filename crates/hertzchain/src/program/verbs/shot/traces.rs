@@ -240,29 +240,27 @@ fn animation(
         positions.push(column.iter().map(|x| place + x).collect());
     }
     let forces = columns.get(2 * count..).unwrap_or_default();
-    let page = Animation::new(&trace.time_s, &positions, forces, &radii)
-        .title(experiment.title())
-        .first_contact(bodies.first)
-        .mark(plan.sensor_bead - bodies.first, "sensor bead");
-    let page = match plan.chain.start {
-        Start::Striker { .. } => page.mark(0, "striker"),
-        Start::Driven { .. } => page.mark(0, "driven end"),
-        Start::Free => page,
+    let near = match plan.chain.start {
+        Start::Striker { .. } => Some((0, "striker")),
+        Start::Driven { .. } => Some((0, "driven end")),
+        Start::Free => None,
     };
-    let page = match pictures::wall(experiment) {
-        Some(_) => page.mark(count - 1, "wall"),
-        None => page,
-    };
+    let wall = pictures::wall(experiment).map(|_| (count - 1, "wall"));
+    let sensor = Some((plan.sensor_bead - bodies.first, "sensor bead"));
+    let named = [sensor, near, wall].into_iter().flatten();
     let clock = pictures::TimeAxis::of(&trace.time_s, experiment.units());
-    let force = if clock.unit.is_empty() { "" } else { "N" };
-    let page = page.units((clock.scale, clock.unit), force);
     let wet = experiment.sections().iter().find(|section| section.wet);
-    match wet {
-        Some(section) => page.wet(
-            section.from.saturating_sub(bodies.first),
-            section.last(plan.chain.beads.len()) - bodies.first,
-        ),
-        None => page,
+    let last = plan.chain.beads.len();
+    Animation {
+        title: experiment.title().into(),
+        marks: named.map(|(bead, name)| (bead, name.into())).collect(),
+        wet_contacts: wet.map(|section| {
+            (section.from.saturating_sub(bodies.first), section.last(last) - bodies.first)
+        }),
+        time_unit: (clock.scale, clock.unit.into()),
+        force_unit: if clock.unit.is_empty() { "" } else { "N" }.into(),
+        first_contact: bodies.first,
+        ..Animation::new(&trace.time_s, &positions, forces, &radii)
     }
 }
 

@@ -6,12 +6,12 @@ mod accuracy;
 mod agreeing;
 mod breaks;
 
+use crate::claims::{
+    Claim, ClaimFinding, ClaimVerdict, EvaluatedClaim, Evaluator, Evidence, MEANING, Needs, claims,
+    claims_markdown, evaluate_all, evaluate_all_rounded, predicates::find as predicate, read,
+};
 use agreeing::{agreeing, dry};
 use breaks::{BREAKS, each};
-use hertzchain_paper::claims::{
-    Claim, ClaimFinding, ClaimVerdict, EvaluatedClaim, Evaluator, Evidence, MEANING, Needs, claims,
-    claims_markdown, evaluate_all, evaluate_all_rounded, predicate, read,
-};
 
 fn evaluator(id: &str) -> Evaluator {
     let all = claims().unwrap();

@@ -1,6 +1,9 @@
 //! The paper's statements, and its rig's.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
+use hertzchain_sim::rig;
+
+mod claims;
 #[path = "../../figures/tests/covered/mod.rs"]
 mod covered;
 mod figures;
@@ -14,3 +17,13 @@ mod rig_figure;
 mod small;
 #[path = "../../figures/tests/type_size/mod.rs"]
 mod type_size;
+
+use crate::reproduce::ReproduceProgress;
+
+/// Reports nothing.
+struct Silent;
+
+impl ReproduceProgress for Silent {
+    fn begin(&self, _stage: &str, _steps: u64) {}
+    fn advance(&self) {}
+}
