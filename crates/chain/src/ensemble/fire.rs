@@ -19,7 +19,7 @@ use fearless_simd::{Simd, dispatch};
 pub struct Shot<'a> {
     /// The chain with whatever sets it in motion.
     pub system: &'a System,
-    /// Step in contact times ([`crate::system::Scales::time_s`]).
+    /// Step in contact times: overlap at which a pair stops, over the speed.
     pub step: f64,
     /// Longest duration in s.
     pub duration_s: f64,
