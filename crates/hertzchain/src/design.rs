@@ -147,7 +147,7 @@ pub(crate) fn run_design(
 ) -> Result<DesignResult, Failure> {
     let fit = fit(problem, &Fitting::default()).map_err(user)?;
     let problem = &sized_by(problem.clone(), &fit, arguments)?;
-    let ways = ways(problem.model().experiment(), &choices(arguments)).map_err(user)?;
+    let ways = ways(&problem.model().experiment, &choices(arguments)).map_err(user)?;
     let errors = ExpectedErrors::like(problem.data());
     let candidates = problem.candidates(&fit, &ways, speeds, &errors).map_err(user)?;
     let picks = arguments.picks.0;

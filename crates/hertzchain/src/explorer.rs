@@ -133,7 +133,7 @@ fn fit_of(text: &str, table: &str, options: &Value) -> Result<Value, Failure> {
     let experiment = Experiment::from_text("experiment.toml", text)?;
     let data = inference::parsed("the table", table, &options.measured, None)?;
     let found = crate::fit(&data, &experiment, &options)?;
-    let numbers = found.problem.model().numbers().as_slice();
+    let numbers = &found.problem.model().numbers;
     let places: Vec<Value> = numbers
         .iter()
         .map(|number| json!({ "name": number.name(), "path": number.path() }))

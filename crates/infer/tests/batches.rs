@@ -94,7 +94,7 @@ fn a_batch_of_shots_has_the_bits_of_the_points_alone_and_a_name_of_its_inputs() 
     let truth = Truth::of(&dry, &speeds_m_s(5));
     let problem = |seed: u64, accuracy: f64| {
         let model = model(&dry, &["eta", "B"]).with_accuracy(accuracy);
-        let parameters = model.numbers().parameters(&truth.speeds_m_s);
+        let parameters = model.numbers.parameters(&truth.speeds_m_s);
         CurveProblem::new(model, truth.measured(seed), parameters).unwrap()
     };
     let one = problem(1, 1e-5);

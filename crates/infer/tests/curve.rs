@@ -30,7 +30,7 @@ fn table(model: &Model, point: &[f64], moved: f64, speed_error: f64) -> Data {
 }
 
 fn problem(model: &Model, data: Data) -> CurveProblem {
-    let parameters = model.numbers().parameters(&data.speeds_m_s());
+    let parameters = model.numbers.parameters(&data.speeds_m_s());
     CurveProblem::new(model.clone(), data, parameters).unwrap()
 }
 
@@ -127,7 +127,7 @@ fn fewer_values_than_parameters_are_refused_by_name() {
     let model = model(&preset("dry").unwrap(), &["eta", "B", "Y"]);
     let mut data = table(&model, &[3.2e4, 77.0, 213e9], 0.0, 0.0);
     data.rows.truncate(1);
-    let parameters = model.numbers().parameters(&data.speeds_m_s());
+    let parameters = model.numbers.parameters(&data.speeds_m_s());
     let error = CurveProblem::new(model, data, parameters).unwrap_err();
     let text = error.to_string();
     assert!(text.contains('2') && text.contains('3'), "{error}");
@@ -147,6 +147,6 @@ fn times_of_flight_tell_speeds_in_another_unit() {
             row.speed_m_s.sigma *= factor;
         }
         let problem = crate::common::problem(&model, data);
-        assert_eq!(problem.curves()[0].other_unit_of_speed(&[3.2e4]), unit);
+        assert_eq!(problem.curves[0].other_unit_of_speed(&[3.2e4]), unit);
     }
 }

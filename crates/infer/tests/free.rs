@@ -56,7 +56,7 @@ fn laws_of_speed_stay_laws_and_become_one_value_a_speed_if_asked() {
     assert_eq!(named(&[0.084271312, 1.23]), ["eta@0.08427", "eta@1.23"]);
     assert_eq!(named(&[0.500001, 0.500002]), ["eta@0.500001", "eta@0.500002"]);
     let number = FreeNumber::find(&preset("dry").unwrap(), "K:power", None).unwrap();
-    assert_eq!((number.form(), number.parameters(&[]).len()), (Form::PowerLaw, 2));
+    assert_eq!((number.form, number.parameters(&[]).len()), (Form::PowerLaw, 2));
 }
 
 #[test]

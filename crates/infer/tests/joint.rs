@@ -105,7 +105,7 @@ fn two_rows_of_one_speed_count_as_one_with_errors_less_by_root_two() {
         assert!((one.1[at] - two.1[at]).abs() < 1e-3 * one.0[at]);
         assert!((one.0[at] / two.0[at] - 2_f64.sqrt()).abs() < 0.01);
     }
-    let each = crate::common::model(&dry, &["B:each"]).numbers().parameters(&[0.5, 0.5, 0.7]);
+    let each = crate::common::model(&dry, &["B:each"]).numbers.parameters(&[0.5, 0.5, 0.7]);
     let names: Vec<&str> = each.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["B@0.5", "B@0.5(2)", "B@0.7"]);
 }

@@ -109,8 +109,8 @@ fn a_record_whose_shot_the_model_does_not_show_is_left_out_by_name() {
     (broken.speed_m_s.value, broken.programmed_m_s) = (-0.7, 0.7);
     let problem = of(vec![broken.clone(), pulses(0.4, 7, false)]).unwrap();
     let named = |source: &&str| *source == "shot 7";
-    assert!(problem.records().iter().map(|r| r.source.as_str()).all(|s| named(&s)));
+    assert!(problem.records.iter().map(|r| r.source.as_str()).all(|s| named(&s)));
     assert_eq!(problem.parameters().len(), 1);
-    assert!(problem.left_out()[0].contains("-0.7 m/s"), "{:?}", problem.left_out());
+    assert!(problem.left_out[0].contains("-0.7 m/s"), "{:?}", problem.left_out);
     assert!(of(vec![broken]).is_err());
 }

@@ -64,7 +64,7 @@ fn a_set_k_and_a_are_those_of_one_contact_and_scale_the_others() {
     for (name, row) in rows() {
         let start = |name: &str| FreeNumber::find(&row, name, None).unwrap();
         let numbers = ["K", "A"].map(start);
-        let reference = numbers[0].reference().unwrap();
+        let reference = numbers[0].reference.as_ref().unwrap();
         assert_eq!(reference.contact, Some(1), "{name}");
         let [least, most] = reference.ratios;
         assert!(most / least > 1.01, "{name}: {least} to {most}");
@@ -102,7 +102,7 @@ fn measured(row: &Experiment, model: Model, speeds: &[f64]) -> CurveProblem {
         case: String::new(),
         rows: speeds.iter().zip(&truth).enumerate().map(line).collect(),
     };
-    let parameters = model.numbers().parameters(speeds);
+    let parameters = model.numbers.parameters(speeds);
     CurveProblem::new(model, data, parameters).unwrap()
 }
 
@@ -112,7 +112,7 @@ fn a_fit_of_k_and_a_finds_those_of_the_reference_contact() {
     for (name, row) in rows() {
         let names = ["K", "A"];
         let model = model(&row, &names).with_accuracy(1e-6);
-        let own: Vec<f64> = (model.numbers().parameters(&[]).iter()).map(|p| p.start).collect();
+        let own: Vec<f64> = (model.numbers.parameters(&[]).iter()).map(|p| p.start).collect();
         let problem = measured(&row, model, &speeds);
         let best = fit(&problem, &Fitting::default()).unwrap();
         for (at, factor) in [1.04, 1.1 / 1.04].into_iter().enumerate() {
@@ -129,7 +129,7 @@ fn profiles_of_k_and_a_hold_those_of_the_reference_contact() {
     let speeds = speeds_between(0.1, 1.0, 5);
     let (name, row) = &rows()[0];
     let model = model(row, &["K", "A"]).with_accuracy(1e-6);
-    let own = model.numbers().parameters(&[]);
+    let own = model.numbers.parameters(&[]);
     let truth = [1.04 * own[0].start, 1.1 / 1.04 * own[1].start];
     let problem = measured(row, model, &speeds);
     let best = fit(&problem, &Fitting::default()).unwrap();

@@ -16,7 +16,7 @@ fn the_dry_pair_comes_back_within_its_errors_from_a_start_far_off() {
     let truth = Truth::of(&dry, &speeds_m_s(SPEEDS));
     let model = model(&dry, &["eta", "B"]);
     let data = truth.measured(1);
-    let mut parameters = model.numbers().parameters(&data.speeds_m_s());
+    let mut parameters = model.numbers.parameters(&data.speeds_m_s());
     (parameters[0].start, parameters[1].start) = (1e4, 10.0);
     let problem = hertzchain_infer::CurveProblem::new(model, data, parameters).unwrap();
     let best = fit(&problem, &Fitting::default()).unwrap();
@@ -152,7 +152,7 @@ fn three_numbers_of_a_material_are_two_of_its_contacts() {
     let viscoelastic = preset("hertz-viscoelastic").unwrap();
     let data = Truth::of(&viscoelastic, &[0.5]).measured(3);
     let three = model(&viscoelastic, &["Y", "nu", "eta"]);
-    let parameters = three.numbers().parameters(&[0.5]);
+    let parameters = three.numbers.parameters(&[0.5]);
     // One speed determines two numbers: three can't even be asked for.
     let few = hertzchain_infer::CurveProblem::new(three.clone(), data.clone(), parameters);
     let reported = few.unwrap_err().to_string();
@@ -236,7 +236,7 @@ fn a_start_far_too_low_leaves_nothing_open() {
     let dry = preset("dry").unwrap();
     let data = Truth::of(&dry, &speeds_m_s(6)).measured(7);
     let model = model(&dry, &["eta", "B"]);
-    let mut parameters = model.numbers().parameters(&data.speeds_m_s());
+    let mut parameters = model.numbers.parameters(&data.speeds_m_s());
     (parameters[0].start, parameters[0].scale) = (32.0, 32.0);
     let problem = hertzchain_infer::CurveProblem::new(model, data, parameters).unwrap();
     let best = fit(&problem, &Fitting::default()).unwrap();
@@ -254,7 +254,7 @@ fn one_speed_and_one_time_tell_one_number() {
     let data = Truth::of(&viscoelastic, &[0.5]).measured(4);
     let data = data.only(&[Observable::Incident]);
     let one = model(&viscoelastic, &["K", "A"]);
-    let parameters = one.numbers().parameters(&[0.5]);
+    let parameters = one.numbers.parameters(&[0.5]);
     let error = hertzchain_infer::CurveProblem::new(one, data, parameters).unwrap_err();
     assert!(error.to_string().contains("1 measured values for 2 free parameters (K, A)"));
 }

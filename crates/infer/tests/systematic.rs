@@ -105,7 +105,7 @@ fn times_and_speeds_and_radii_are_moved_as_the_names_say() {
 fn a_systematic_error_that_the_data_know_nothing_of_keeps_its_prior() {
     let dry = preset("dry").unwrap();
     let model = uncertain(&dry, &["eta"], &[("radius_error", 5e-6)]);
-    let parameters = model.numbers().parameters(&[0.5]);
+    let parameters = model.numbers.parameters(&[0.5]);
     assert_eq!(parameters[1].prior, Prior::Normal { mean: 0.0, sd: 5e-6 });
     // One number for two parameters, one of which has a prior.
     let data = exact(&Truth::of(&dry, &[0.5]));

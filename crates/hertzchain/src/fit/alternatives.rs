@@ -57,7 +57,7 @@ pub(super) fn alternatives(
         return Ok(None);
     }
     let name =
-        format!("{} ({})", problem.model().experiment().name(), arguments.freed.free.join(", "));
+        format!("{} ({})", problem.model().experiment.name(), arguments.freed.free.join(", "));
     let mut all = vec![alternative(name, (problem, kept), own.clone(), arguments.seed)?];
     let mut lost = Vec::new();
     for against in &arguments.against {
@@ -120,10 +120,10 @@ fn posed(
     let sets = std::mem::take(&mut modelled.set);
     let plain = inference::experiment(&modelled, Some(&data.case))?;
     let (experiment, without) = set_where_known(plain, &sets)?;
-    let own = problem.model().experiment();
+    let own = &problem.model().experiment;
     let freed = renamed(&arguments.freed, own, &against.free, &experiment);
     let model = inference::model(&experiment, &modelled, &freed)?;
-    let parameters = model.numbers().parameters(&data.speeds_m_s());
+    let parameters = model.numbers.parameters(&data.speeds_m_s());
     let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
     let posed = inference::problem(model, data, &about(freed, &names))?;
     Ok((posed, without))

@@ -129,7 +129,7 @@ impl FitResult {
         let mut end = 0;
         let table = |(curve, fit_curve): (&'a MeasuredCurve, &'a FitCurve)| {
             let first = end;
-            end += curve.data().value_count();
+            end += curve.data.value_count();
             TableFit {
                 residuals: &self.inferred.fit.residuals[first..end],
                 curve,
@@ -137,7 +137,7 @@ impl FitResult {
                 first,
             }
         };
-        self.problem.curves().iter().zip(&self.curves).map(table).collect()
+        self.problem.curves.iter().zip(&self.curves).map(table).collect()
     }
 
     /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
@@ -151,7 +151,7 @@ impl FitResult {
     /// flight a pair are all that was measured, and how to look for them; nothing if the fit
     /// had several starts.
     pub(crate) fn pair_warning(&self) -> Option<String> {
-        let numbers = self.problem.model().numbers().as_slice();
+        let numbers = &self.problem.model().numbers;
         let of = |number: &FreeNumber, short: &str| {
             let (owner, name) = number.name().rsplit_once('.').unwrap_or(("", number.name()));
             (name == short).then(|| owner.to_owned())
@@ -259,7 +259,7 @@ impl Modelled for CurveProblem {
 
 impl Modelled for PulseProblem {
     fn accuracy(&self) -> f64 {
-        self.model().accuracy
+        self.model.accuracy
     }
 
     fn computed_to(self, accuracy: f64) -> Self {
@@ -376,16 +376,15 @@ fn reported(
     (inferred, alternatives): (Inferred, Option<AlternativeModels>),
 ) -> Result<FitResult, Failure> {
     let (fit, covariance) = (&inferred.fit, &inferred.covariance);
-    let all = problem.curves();
+    let all = &problem.curves;
     let alone = all.len() == 1 && fit.ending.converged() && !inferred.is_closed_by_priors();
     let open = !inferred.identifiability.unidentifiable.is_empty() && alone;
     let curves = all.iter().map(|curve| curve.fit_curve(fit, covariance));
     let accuracies = all.iter().map(|curve| curve.accuracy_reached(&fit.point));
     let accuracies = accuracies.collect::<Result<Vec<f64>, _>>().map_err(user)?;
     let start: Vec<f64> = inferred.parameters.iter().map(|p| p.start).collect();
-    let unit = |curve: &MeasuredCurve| {
-        Some((curve.data().file.clone(), curve.other_unit_of_speed(&start)?))
-    };
+    let unit =
+        |curve: &MeasuredCurve| Some((curve.data.file.clone(), curve.other_unit_of_speed(&start)?));
     let rejected = inferred.goodness.is_rejected();
     Ok(FitResult {
         unit_of_speed: rejected.then(|| all.iter().find_map(unit)).flatten(),

@@ -169,7 +169,7 @@ pub fn fit_result(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, F
     let mut refused = recorded.refused;
     let problem = PulseProblem::new(recorded.model, recorded.records, recorded.respond);
     let problem = problem.map_err(|error| none_left(&error, &refused))?;
-    refused.extend(problem.left_out().iter().cloned());
+    refused.extend(problem.left_out.iter().cloned());
     let problem = inference::pulses(problem, &arguments.freed)?;
     let nuisances = problem.nuisance_count();
     let (problem, fit) = best_fit(problem, nuisances, &asked(arguments))?;
@@ -195,15 +195,15 @@ impl Pulsed {
     /// What was done beyond what was asked for, so that the fit found the minimum, one sentence
     /// each.
     pub(crate) fn unasked(&self, arguments: &Arguments) -> Vec<String> {
-        let accuracy = (arguments.modelled.accuracy.0, self.problem.model().accuracy);
+        let accuracy = (arguments.modelled.accuracy.0, self.problem.model.accuracy);
         unasked(&self.inferred.fit, accuracy, arguments.starts.0)
     }
 
     /// The amplifier's filters that the model's signals have passed, in words.
     pub fn filters(&self) -> String {
-        let model = self.problem.model();
-        let mut amplifier = model.experiment().campaign().amplifier;
-        let mut numbers = model.numbers().as_slice().iter();
+        let model = &self.problem.model;
+        let mut amplifier = model.experiment.campaign().amplifier;
+        let mut numbers = model.numbers.iter();
         let free = numbers.find(|number| number.path() == Some(LOW_PASS));
         let parameters = self.inferred.parameters.iter();
         let mut fit_result = parameters.zip(&self.inferred.fit.point);
@@ -220,12 +220,12 @@ const LOW_PASS: &str = "campaign.amplifier.low_pass";
 
 /// Everything, to be read by programs and to be repeated.
 pub fn json(fit_result: &Pulsed, arguments: &Arguments) -> Value {
-    let records = fit_result.problem.records().iter();
+    let records = fit_result.problem.records.iter();
     let own = json!({
-        "model": fit_result.problem.model().experiment().name(),
-        "kept": inference::unit_changes(fit_result.problem.model(), &arguments.modelled.set),
-        "held_loads": inference::held_loads(fit_result.problem.model()),
-        "references": inference::references_json(fit_result.problem.model()),
+        "model": fit_result.problem.model.experiment.name(),
+        "kept": inference::unit_changes(&fit_result.problem.model, &arguments.modelled.set),
+        "held_loads": inference::held_loads(&fit_result.problem.model),
+        "references": inference::references_json(&fit_result.problem.model),
         "filters": fit_result.filters(),
         "unasked": fit_result.unasked(arguments),
         "residuals": fit_result.problem.residual_count(),
@@ -257,7 +257,7 @@ pub struct Shown<'a> {
 /// # Errors
 /// What is in the way of a shot.
 pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
-    let records = fit_result.problem.records().iter().enumerate();
+    let records = fit_result.problem.records.iter().enumerate();
     let all = records.flat_map(|(at, record)| {
         (0..record.means_v.len()).map(move |channel| {
             let point = &fit_result.inferred.fit.point;

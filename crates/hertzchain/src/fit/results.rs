@@ -13,7 +13,7 @@ pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
     let data = fit_result.problem.data();
     let mut own = json!({
         "data": { "file": data.file, "case": data.case, "rows": data.rows.len(), "values": data.value_count() },
-        "model": fit_result.problem.model().experiment().name(),
+        "model": fit_result.problem.model().experiment.name(),
         "model_accuracy": fit_result.accuracy,
         "assumed": assumed(data, &arguments.measured),
         "kept": unit_changes(fit_result.problem.model(), &arguments.modelled.set),
@@ -30,8 +30,7 @@ pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
     });
     let tables = fit_result.tables();
     if tables.len() > 1 {
-        let all =
-            tables.iter().filter_map(|table| assumed(table.curve.data(), &arguments.measured));
+        let all = tables.iter().filter_map(|table| assumed(&table.curve.data, &arguments.measured));
         own["assumed"] = all.reduce(|all, one| format!("{all}; {one}")).into();
         own["tables"] = tables.iter().map(table).collect();
     }
@@ -40,12 +39,12 @@ pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
 
 /// A table of several that were fitted together.
 fn table(of: &TableFit<'_>) -> Value {
-    let (data, model) = (of.curve.data(), of.curve.model());
+    let (data, model) = (&of.curve.data, &of.curve.model);
     json!({
         "file": data.file,
         "case": data.case,
-        "model": model.experiment().name(),
-        "free": model.numbers().as_slice().iter().map(|number| number.name()).collect::<Value>(),
+        "model": model.experiment.name(),
+        "free": model.numbers.iter().map(|number| number.name()).collect::<Value>(),
         "rows": data.rows.len(),
         "values": data.value_count(),
         "chi_square": of.chi_square(),
@@ -269,7 +268,7 @@ pub fn rows_json(fit_result: &FitResult) -> Value {
 }
 
 fn rows_of(table: &TableFit<'_>, with_file: bool) -> Vec<Value> {
-    let data = table.curve.data();
+    let data = &table.curve.data;
     let one = |((at, of), residual): ((usize, Observable), &f64)| {
         let row = &data.rows[at];
         let value = row.value(of);

@@ -256,7 +256,7 @@ fn rows(fit_result: &FitResult) -> String {
         measured.map(move |line| (table, line))
     });
     let line = |(table, ((at, of), residual)): (&TableFit<'_>, ((usize, Observable), &f64))| {
-        let data = table.curve.data();
+        let data = &table.curve.data;
         let row = &data.rows[at];
         let (value, curve) = (row.value(of), table.fit_curve);
         let predicted = curve.predicted.get(at).and_then(|row| row[of as usize]);

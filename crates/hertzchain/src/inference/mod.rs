@@ -391,7 +391,7 @@ fn of_numbers(
 
 /// Data against a model with what is known of its parameters.
 pub fn problem(model: Model, data: Data, freed: &Freed) -> Result<CurveProblem, Failure> {
-    let mut parameters = model.numbers().parameters(&data.speeds_m_s());
+    let mut parameters = model.numbers.parameters(&data.speeds_m_s());
     known::apply(freed, &mut parameters)?;
     CurveProblem::new(model, data, parameters).map_err(user)
 }
@@ -430,7 +430,7 @@ pub fn posed(pairs: &[(Data, Experiment)], options: &FitOptions) -> Result<Curve
         curves.push((of_numbers(experiment, modelled, known)?, data.clone()));
     }
     let is_free = |name: &&String| {
-        let mut numbers = curves.iter().flat_map(|(model, _)| model.numbers().as_slice());
+        let mut numbers = curves.iter().flat_map(|(model, _)| model.numbers.iter());
         numbers.any(|number| number.name() == name.as_str())
     };
     if let Some(name) = options.own.iter().find(|name| !is_free(name)) {

@@ -7,14 +7,14 @@ use serde_json::{Value, json};
 
 /// The free numbers of a model that belong to contacts, and those contacts.
 fn all(model: &Model) -> impl Iterator<Item = (&str, &Reference)> {
-    let numbers = model.numbers().as_slice().iter();
-    numbers.filter_map(|number| Some((number.name(), number.reference()?)))
+    let numbers = model.numbers.iter();
+    numbers.filter_map(|number| Some((number.name(), number.reference.as_ref()?)))
 }
 
 /// Which contact each free K or A is the value of, and what the others of its section have,
 /// a sentence each.
 pub fn references(model: &Model) -> Vec<String> {
-    let experiment = model.experiment();
+    let experiment = &model.experiment;
     all(model).map(|(name, reference)| sentence(name, reference, experiment.beads())).collect()
 }
 

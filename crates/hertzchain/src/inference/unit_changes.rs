@@ -9,8 +9,8 @@ use hertzchain_infer::{FreeNumber, Model};
 /// What it means that a number on which a unit depends, such as the n of F = k δ^n,
 /// is free or set, one sentence for each number in that unit.
 pub fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
-    let experiment = model.experiment();
-    let free = model.numbers().as_slice().iter().map(|n| n.name());
+    let experiment = &model.experiment;
+    let free = model.numbers.iter().map(|n| n.name());
     let free = paths(experiment, free);
     let set = paths(experiment, sets.iter().map(|set| set.name.as_str()));
     let mut reported: Vec<String> = without_effect(model, sets);
@@ -34,14 +34,14 @@ pub fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
 /// That friction holds other loads on a pushed row than the model's equilibrium has, and how much
 /// they may differ; nothing where the push is free.
 pub fn held_loads(model: &Model) -> Option<String> {
-    let experiment = model.experiment();
+    let experiment = &model.experiment;
     let (chain, _) = experiment.chain(None).ok()?;
     let mass_kg: f64 = chain.beads.iter().map(|bead| bead.mass_kg).sum();
     let weight_n = chain.gravity_m_s2 * mass_kg;
     let push_n = chain.push.force_n();
     let load_n = push_n + weight_n * chain.incline_rad.sin();
     let held_n = experiment.friction_coefficient() * weight_n * chain.incline_rad.cos();
-    let free = model.numbers().as_slice().iter();
+    let free = model.numbers.iter();
     let is_free = free.map(FreeNumber::path).any(|path| path == Some(PUSH));
     if is_free || load_n <= 0.0 || held_n <= 0.0 {
         return None;
@@ -65,7 +65,7 @@ const PUSH: &str = "near_end.force";
 /// What a Young modulus still does where a stiffness that would follow from it has a
 /// number of its own.
 fn without_effect(model: &Model, sets: &[Assignment]) -> Vec<String> {
-    let free: Vec<&str> = model.numbers().as_slice().iter().map(|n| n.name()).collect();
+    let free: Vec<&str> = model.numbers.iter().map(|n| n.name()).collect();
     let all = free.iter().copied().chain(sets.iter().map(|set| set.name.as_str()));
     let Some(stiffness) = all.into_iter().find(|name| STIFFNESS.contains(&last(name))) else {
         return Vec::new();

@@ -98,7 +98,7 @@ impl CurveProblem {
                 format!("{} at {} speeds from {from:.2} to {to:.2} m/s", way.name, speeds.len());
             Ok(prospect(&name, all.determined()))
         };
-        let ways = ways(self.model().experiment(), &Choices::default()).unwrap_or_default();
+        let ways = ways(&self.model().experiment, &Choices::default()).unwrap_or_default();
         let found = ways.into_iter().map(evaluated);
         let mut prospects: Vec<Prospect> = found.filter_map(Result::ok).collect();
         prospects.sort_by(|a, b| {

@@ -190,8 +190,8 @@ impl CurveProblem {
         speeds_m_s: &[f64],
         errors: &ExpectedErrors,
     ) -> Result<Vec<Candidate>, InferError> {
-        let numbers = self.model().numbers();
-        let each = numbers.as_slice().iter().find(|n| n.form() == Form::EachSpeed);
+        let numbers = &self.model().numbers;
+        let each = numbers.iter().find(|n| n.form == Form::EachSpeed);
         if let Some(number) = each {
             return Err(InferError::Input(format!(
                 "{} has one value for each speed of the data, which says nothing of other speeds",

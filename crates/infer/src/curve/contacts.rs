@@ -10,12 +10,12 @@ const THREE: [&str; 3] = ["young_modulus", "poisson_ratio", "shear_viscosity"];
 /// That Young modulus, Poisson ratio and viscosity of one material enter through two
 /// numbers of its contacts alone, where all three are free, and what to free instead.
 pub(super) fn three_for_two(model: &Model) -> Option<String> {
-    let numbers = model.numbers().as_slice().iter();
-    let constant = numbers.filter(|number| number.form() != Form::EachSpeed);
+    let numbers = model.numbers.iter();
+    let constant = numbers.filter(|number| number.form != Form::EachSpeed);
     let owners: Vec<(&str, &str)> = constant.filter_map(FreeNumber::material_number).collect();
     let all = |owner: &str| THREE.iter().all(|number| owners.contains(&(owner, number)));
     let (owner, _) = owners.iter().find(|(owner, _)| all(owner))?;
-    let experiment = model.experiment();
+    let experiment = &model.experiment;
     let [stiffness, relaxation] = names(experiment, owner);
     Some(format!(
         "Young modulus, Poisson ratio and viscosity of `{owner}` enter only through K and A of its contacts, \

@@ -22,7 +22,8 @@ pub(crate) enum Supply {
 #[derive(Clone, Debug)]
 pub struct CurveProblem {
     parameters: Vec<Parameter>,
-    curves: Vec<MeasuredCurve>,
+    /// The curves, at least one.
+    pub curves: Vec<MeasuredCurve>,
 }
 
 impl CurveProblem {
@@ -50,7 +51,7 @@ impl CurveProblem {
         };
         let curve = |(at, (model, data)): (usize, (Model, Data))| {
             let speeds = data.speeds_m_s();
-            let supplies = model.numbers().as_slice().iter().flat_map(|number| {
+            let supplies = model.numbers.iter().flat_map(|number| {
                 let name = number.name();
                 let is_own = several && own.iter().any(|own| own == name);
                 number.parameters(&speeds).into_iter().map(move |parameter| match is_own {
@@ -108,19 +109,14 @@ impl CurveProblem {
         Self::unchecked(parameters, self.curves).checked()
     }
 
-    /// The curves, at least one.
-    pub fn curves(&self) -> &[MeasuredCurve] {
-        &self.curves
-    }
-
     /// The model of the first curve.
     pub fn model(&self) -> &Model {
-        self.curves[0].model()
+        &self.curves[0].model
     }
 
     /// The data of the first curve.
     pub fn data(&self) -> &Data {
-        self.curves[0].data()
+        &self.curves[0].data
     }
 
     /// Of everything that residuals follow from: experiments as they are
@@ -238,7 +234,7 @@ impl Problem for CurveProblem {
     }
 
     fn residual_count(&self) -> usize {
-        self.curves.iter().map(|curve| curve.data().value_count()).sum()
+        self.curves.iter().map(|curve| curve.data.value_count()).sum()
     }
 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Result<Residuals, ModelError>> {
@@ -259,7 +255,7 @@ impl Problem for CurveProblem {
     fn residual_label(&self, index: usize) -> String {
         let named = |curve: &MeasuredCurve, label: &String| match self.curves.len() {
             1 => label.clone(),
-            _ => format!("{}, {label}", curve.data().file),
+            _ => format!("{}, {label}", curve.data.file),
         };
         let all =
             self.curves.iter().flat_map(|curve| curve.labels().iter().map(move |l| (curve, l)));

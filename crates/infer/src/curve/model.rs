@@ -33,8 +33,10 @@ impl Speeds {
 /// An experiment whose free numbers are parameters.
 #[derive(Clone, Debug)]
 pub struct Model {
-    experiment: Experiment,
-    numbers: FreeNumbers,
+    /// The experiment that its parameters change.
+    pub experiment: Experiment,
+    /// Its free numbers.
+    pub numbers: FreeNumbers,
     /// Relative accuracy of times of flight.
     pub accuracy: f64,
     /// Vector instructions of the ensemble.
@@ -100,16 +102,6 @@ impl Model {
             .text("parameters", &format!("{parameters:?}"))
             .text("set", self.set.name())
             .numbers("accuracy", &[self.accuracy])
-    }
-
-    /// Its free numbers.
-    pub fn numbers(&self) -> &FreeNumbers {
-        &self.numbers
-    }
-
-    /// The experiment that its parameters change.
-    pub fn experiment(&self) -> &Experiment {
-        &self.experiment
     }
 
     /// Predictions at all speeds for every point.

@@ -21,8 +21,10 @@ const ASIDE: f64 = 0.02;
 /// slope of the model's own curve.
 #[derive(Clone, Debug)]
 pub struct MeasuredCurve {
-    model: Model,
-    data: Data,
+    /// The model.
+    pub model: Model,
+    /// The data.
+    pub data: Data,
     /// Where each of the model's parameters comes from.
     pub(crate) supplies: Vec<Supply>,
     speeds: Speeds,
@@ -33,7 +35,7 @@ pub struct MeasuredCurve {
 impl MeasuredCurve {
     /// Data and a model whose parameters are the problem's first, in their order.
     pub fn new(model: Model, data: Data) -> Self {
-        let count = model.numbers().parameters(&data.speeds_m_s()).len();
+        let count = model.numbers.parameters(&data.speeds_m_s()).len();
         let (speeds, stencils) = curve_speeds(&data.speeds_m_s());
         let labels = data.rows.iter().flat_map(row_labels).collect();
         Self {
@@ -49,16 +51,6 @@ impl MeasuredCurve {
     /// The same with the model's parameters from elsewhere.
     pub(crate) fn supplied(self, supplies: Vec<Supply>) -> Self {
         Self { supplies, ..self }
-    }
-
-    /// The model.
-    pub fn model(&self) -> &Model {
-        &self.model
-    }
-
-    /// The data.
-    pub fn data(&self) -> &Data {
-        &self.data
     }
 
     /// The model's parameters at a point of the problem.

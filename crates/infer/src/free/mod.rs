@@ -13,6 +13,7 @@ use crate::{InferError, Parameter, Prior};
 use hertzchain_experiment::{Experiment, Reference};
 use name::Target;
 use std::collections::HashSet;
+use std::ops::Deref;
 
 /// How a number depends on the speed of the striker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,12 +32,14 @@ pub enum Form {
 pub struct FreeNumber {
     name: String,
     target: Target,
-    form: Form,
+    /// How it depends on speed.
+    pub form: Form,
     unit: String,
     /// Value at the start, or prefactor and exponent.
     start: (f64, f64),
     bounds: (f64, f64),
-    reference: Option<Reference>,
+    /// The contacts that a K or A holds for, and which of them has the value itself.
+    pub reference: Option<Reference>,
     /// Standard deviation of a normal prior about the start.
     prior_sd: Option<f64>,
 }
@@ -109,11 +112,6 @@ impl FreeNumber {
         &self.name
     }
 
-    /// How it depends on speed.
-    pub fn form(&self) -> Form {
-        self.form
-    }
-
     /// Its parameters over data at these speeds in m/s, each called after it.
     pub fn parameters(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
         let (value, exponent) = self.start;
@@ -149,11 +147,6 @@ impl FreeNumber {
     /// `None` of a number of the instruments.
     pub fn path(&self) -> Option<&str> {
         self.target.path()
-    }
-
-    /// The contacts that a K or A holds for, and which of them has the value itself.
-    pub fn reference(&self) -> Option<&Reference> {
-        self.reference.as_ref()
     }
 
     /// The material and the key of a number of a material.
@@ -220,6 +213,15 @@ const MOST_DIGITS: usize = 17;
 #[derive(Clone, Debug)]
 pub struct FreeNumbers(Vec<FreeNumber>);
 
+impl Deref for FreeNumbers {
+    type Target = [FreeNumber];
+
+    /// The numbers, in the order in which their parameters stand.
+    fn deref(&self) -> &[FreeNumber] {
+        &self.0
+    }
+}
+
 /// What the parameters make of an experiment at one speed.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub(crate) struct Settings {
@@ -250,11 +252,6 @@ impl FreeNumbers {
             }
         }
         Ok(Self(numbers))
-    }
-
-    /// The numbers, in the order in which their parameters stand.
-    pub fn as_slice(&self) -> &[FreeNumber] {
-        &self.0
     }
 
     /// Whether the number of this path is among them.

@@ -90,7 +90,7 @@ impl Gauge {
             ));
         };
         let dry_model = model(chains.dry, &[])?;
-        let parameters = dry_model.numbers().parameters(&dry.speeds_m_s());
+        let parameters = dry_model.numbers.parameters(&dry.speeds_m_s());
         let dry = CurveProblem::new(dry_model, dry, parameters)?;
         let dry_fit =
             fit(&dry, &Fitting::default()).map_err(|error| error.about("the dry curve"))?;
@@ -119,7 +119,7 @@ impl Gauge {
 
     /// The wet chain's nuisance parameters over these speeds in m/s, as its model has them.
     pub fn wet_own(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
-        let numbers = self.wet.numbers().as_slice();
+        let numbers = &self.wet.numbers;
         let end = numbers.len() - CONTACT;
         let own = numbers[end - self.own..end].iter();
         let own = own.flat_map(|number| number.parameters(speeds_m_s));
@@ -128,7 +128,7 @@ impl Gauge {
 
     /// How many of the dry fit's parameters hold for both chains: the first.
     fn common(&self) -> usize {
-        let numbers = self.dry.model().numbers().as_slice();
+        let numbers = &self.dry.model().numbers;
         let common = numbers.iter().take(numbers.len() - self.own);
         let speeds = self.dry.data().rows.len();
         common.map(|number| number.parameter_count(speeds)).sum()
@@ -156,7 +156,7 @@ impl Gauge {
             )
         });
         let fails = rejected.is_some() || verdict.allowed().next().is_none();
-        let can_be_loaded = fails && self.wet.experiment().get(PUSH).is_ok();
+        let can_be_loaded = fails && self.wet.experiment.get(PUSH).is_ok();
         let has_reflected = self.data.has(Observable::Reflected);
         let options = [
             (self.own == 0).then_some("a load for each chain (--own near_end.force)"),
@@ -177,7 +177,7 @@ impl Gauge {
 fn wet_radius_m(experiment: &Experiment) -> Option<f64> {
     let section = experiment.sections().iter().find(|section| section.wet)?;
     let stiffness = FreeNumber::find(experiment, "wet.K", None).ok();
-    let reference = stiffness.as_ref().and_then(|number| number.reference()?.contact);
+    let reference = stiffness.as_ref().and_then(|number| number.reference.as_ref()?.contact);
     let (chain, _) = experiment.chain(None).ok()?;
     Some(chain.pair(reference.unwrap_or(section.from))?.radius_m)
 }

@@ -223,7 +223,7 @@ impl Gauge {
     /// contacts' numbers given.
     fn row_problem(&self, row: usize, (free, at): (Free, [f64; 2]), dry: &[f64]) -> CurveProblem {
         let data = Data { rows: vec![self.data.rows[row].clone()], ..self.data.clone() };
-        let numbers = self.wet.numbers().as_slice();
+        let numbers = &self.wet.numbers;
         let contact = numbers[numbers.len() - CONTACT..].iter();
         let contact = contact.flat_map(|number| number.parameters(&[])).zip(at);
         let mut start: Vec<Parameter> = contact

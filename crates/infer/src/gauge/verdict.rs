@@ -93,8 +93,8 @@ impl Gauge {
     /// # Errors
     /// Names that the wet model does not know; an oil that fails is in the verdict.
     pub fn verdict(&self, oils: &[Oil]) -> Result<Verdict, InferError> {
-        let experiment = self.wet.experiment();
-        let own = self.wet.numbers().as_slice();
+        let experiment = &self.wet.experiment;
+        let own = &self.wet.numbers;
         let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();
         for name in ["wet.K:each", "wet.A:each"] {
             numbers.push(FreeNumber::find(experiment, name, None)?);
@@ -124,7 +124,7 @@ impl Gauge {
         let pairs = self.dry.parameters().iter().zip(&self.dry_fit.point);
         let dry = pairs.map(|(parameter, value)| Parameter { start: *value, ..parameter.clone() });
         let parameters = dry.chain(own.clone()).collect();
-        let joint = CurveProblem::unchecked(parameters, vec![self.dry.curves()[0].clone(), wet]);
+        let joint = CurveProblem::unchecked(parameters, vec![self.dry.curves[0].clone(), wet]);
         // Two or three numbers that start at their dry values, to a hundredth of what would change a
         // verdict.
         let how = Fitting { tolerance: 0.01, iterations: 20, ..Fitting::default() };
@@ -156,7 +156,7 @@ impl Gauge {
         let Some(chi_square) = chi_square else {
             return InferError::input("its distance is not finite");
         };
-        let label = joint.curves()[1].labels()[largest.residual - first].clone();
+        let label = joint.curves[1].labels()[largest.residual - first].clone();
         let own = own.into_iter().enumerate().map(|(at, parameter)| NuisanceParameter {
             parameter,
             value: fit_result.point[count + at],

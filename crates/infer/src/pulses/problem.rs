@@ -48,16 +48,19 @@ impl fmt::Debug for Respond {
 /// speed are at their best for every set of parameters.
 #[derive(Clone, Debug)]
 pub struct PulseProblem {
-    model: Model,
+    /// The model.
+    pub model: Model,
     respond: Respond,
-    records: Vec<Pulses>,
+    /// The records that it is compared with.
+    pub records: Vec<Pulses>,
     /// Which of the programmed speeds of the striker each record has.
     rows: Vec<usize>,
     speeds_m_s: Vec<f64>,
     parameters: Vec<Parameter>,
     /// How long each record's shot is followed, and how densely, in s.
     grids: Vec<(f64, f64)>,
-    left_out: Vec<String>,
+    /// Records whose shot shows no pulse, and why.
+    pub left_out: Vec<String>,
 }
 
 /// Share of the model's first passing time by which it may become later.
@@ -92,7 +95,7 @@ impl PulseProblem {
         };
         let mut problem = Self {
             rows: records.iter().map(row).collect(),
-            parameters: model.numbers().parameters(&speeds_m_s),
+            parameters: model.numbers.parameters(&speeds_m_s),
             grids: Vec::new(),
             left_out: Vec::new(),
             model,
@@ -130,21 +133,6 @@ impl PulseProblem {
     pub fn with_accuracy(mut self, accuracy: f64) -> Self {
         self.model = self.model.with_accuracy(accuracy);
         self
-    }
-
-    /// Records of which the model, where it starts, has no pulses to compare with, and why.
-    pub fn left_out(&self) -> &[String] {
-        &self.left_out
-    }
-
-    /// The records.
-    pub fn records(&self) -> &[Pulses] {
-        &self.records
-    }
-
-    /// The model.
-    pub fn model(&self) -> &Model {
-        &self.model
     }
 
     /// Of everything that residuals follow from: the experiment as it is understood,

@@ -226,6 +226,6 @@ impl Truth {
 
 /// Data against a model whose parameters start at the experiment's numbers.
 pub(crate) fn problem(model: &Model, data: Data) -> CurveProblem {
-    let parameters = model.numbers().parameters(&data.speeds_m_s());
+    let parameters = model.numbers.parameters(&data.speeds_m_s());
     CurveProblem::new(model.clone(), data, parameters).unwrap()
 }

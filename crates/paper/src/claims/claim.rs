@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// On which side of the threshold the deciding number must lie.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
-pub enum Needs {
+pub(crate) enum Needs {
     /// The number exceeds the threshold.
     Above,
     /// The number is less than the threshold.
@@ -39,7 +39,7 @@ pub struct Claim {
     #[serde(default)]
     pub expected: Vec<f64>,
     /// The side of the threshold that the claim needs.
-    pub needs: Needs,
+    pub(crate) needs: Needs,
     /// What the deciding number is compared with, or its largest deviation from
     /// the expected one.
     pub threshold: f64,
@@ -93,7 +93,7 @@ pub(crate) type Predicate<E> = fn(&Claim, &E) -> ClaimFinding;
 /// A claim and the code that decides it on numbers of a kind: those of single
 /// shots, if nothing else is said.
 #[derive(Clone, Debug)]
-pub struct Evaluator<E = Evidence> {
+pub(crate) struct Evaluator<E = Evidence> {
     /// The row.
     pub claim: Claim,
     predicate: Predicate<E>,
@@ -101,7 +101,7 @@ pub struct Evaluator<E = Evidence> {
 
 impl<E> Evaluator<E> {
     /// Decides the claim on numbers.
-    pub fn decide(&self, evidence: &E) -> ClaimFinding {
+    pub(crate) fn decide(&self, evidence: &E) -> ClaimFinding {
         (self.predicate)(&self.claim, evidence)
     }
 }
@@ -138,7 +138,7 @@ static PAPER: &str = include_str!("../../data/claims.toml");
 ///
 /// # Errors
 /// When the data file is damaged, which a test rules out.
-pub fn claims() -> Result<Vec<Evaluator>, ClaimError> {
+pub(crate) fn claims() -> Result<Vec<Evaluator>, ClaimError> {
     read(PAPER, predicates::find)
 }
 
@@ -168,7 +168,7 @@ pub(crate) fn read<E>(
 /// Findings of a claim when the printed constants were drawn anew within
 /// half a unit of their last digit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rounded {
+pub(crate) struct Rounded {
     /// Number of draws.
     pub draws: usize,
     /// Draws with each verdict, in the order of [`ClaimVerdict::ALL`], by the side on
@@ -215,9 +215,9 @@ pub struct EvaluatedClaim {
     /// The verdict, rounding considered.
     pub verdict: ClaimVerdict,
     /// What the constants as printed give.
-    pub finding: ClaimFinding,
+    pub(crate) finding: ClaimFinding,
     /// What rounding does, if it was looked at.
-    pub rounded: Option<Rounded>,
+    pub(crate) rounded: Option<Rounded>,
 }
 
 impl EvaluatedClaim {

@@ -11,7 +11,7 @@ pub(crate) const SHOTS_PER_POINT: f64 = 20.0;
 
 /// Which passage a time of flight belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum TofBranch {
+pub(crate) enum TofBranch {
     /// From the sensor bead to the wall.
     Incident,
     /// From the wall back to the sensor bead.
@@ -202,7 +202,7 @@ impl TofRatio {
 
 /// One liquid as printed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PrintedOil {
+pub(crate) struct PrintedOil {
     /// Name of its case.
     pub case: String,
     /// Kinematic viscosity in m²/s.
@@ -220,7 +220,7 @@ impl PrintedOil {
 
 /// What a published figure shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MeasuredKind {
+pub(crate) enum MeasuredKind {
     /// Peak force at the sensor bead over that at the wall.
     SensorOverWall,
     /// A time of flight in s.
@@ -231,7 +231,7 @@ pub enum MeasuredKind {
 
 /// A measured point, read off a published figure.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Digitised {
+pub(crate) struct Digitised {
     /// What was measured.
     pub what: MeasuredKind,
     /// Case it belongs to.
@@ -250,11 +250,11 @@ pub struct Evidence {
     /// One curve a case.
     pub curves: Vec<Curve>,
     /// The liquids.
-    pub oils: Vec<PrintedOil>,
+    pub(crate) oils: Vec<PrintedOil>,
     /// Viscosity over Young modulus of the dry balls, η/Y in s.
     pub viscosity_over_modulus_s: f64,
     /// Measured points; the paper prints none.
-    pub digitised: Vec<Digitised>,
+    pub(crate) digitised: Vec<Digitised>,
 }
 
 impl Evidence {

@@ -8,7 +8,7 @@ pub(crate) const IN_PART: f64 = 0.5;
 
 /// A predicate's answer: a number with its accuracy, and what follows from it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ClaimFinding {
+pub(crate) struct ClaimFinding {
     /// What follows.
     pub verdict: ClaimVerdict,
     /// What would follow if the numbers were exact: on which side they lie, be it
@@ -28,7 +28,7 @@ pub struct ClaimFinding {
 
 /// How far a reading is from where what is counted changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distance {
+pub(crate) struct Distance {
     /// The reading's distance from there.
     pub margin: f64,
     /// Absolute accuracy of the reading: a count whose margins are all larger

@@ -10,9 +10,14 @@ pub(crate) mod finding;
 pub(crate) mod predicates;
 mod report;
 
+pub use self::{
+    claim::EvaluatedClaim,
+    finding::ClaimVerdict,
+    report::{MEANING, computed_text},
+};
 pub(crate) use self::{
     claim::{
-        Claim, ClaimError, Evaluator, Needs, Predicate, Rounded, evaluate_all,
+        Claim, ClaimError, Evaluator, Needs, Predicate, Rounded, claims, evaluate_all,
         evaluate_all_rounded, read,
     },
     evidence::{
@@ -21,9 +26,4 @@ pub(crate) use self::{
     },
     finding::{ClaimFinding, Comparisons, IN_PART},
     report::{claims_json, claims_markdown, rounded_text, verdicts_text, with_unit},
-};
-pub use self::{
-    claim::{EvaluatedClaim, claims},
-    finding::ClaimVerdict,
-    report::{MEANING, computed_text},
 };

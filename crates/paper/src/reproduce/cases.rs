@@ -20,14 +20,14 @@ pub(crate) const OILS: [&str; 3] = ["pump", "gear", "motor"];
 
 /// The paper's chains in one reading.
 #[derive(Clone, Debug)]
-pub struct Cases(Vec<(&'static str, Experiment)>);
+pub(crate) struct Cases(Vec<(&'static str, Experiment)>);
 
 impl Cases {
     /// All of them.
     ///
     /// # Errors
     /// A reading that leaves something outside a chain.
-    pub fn new(reading: &Reading) -> Result<Self, ReproduceError> {
+    pub(crate) fn new(reading: &Reading) -> Result<Self, ReproduceError> {
         let open = |case| {
             let experiment = preset(case).map_err(ReproduceError::Preset)?;
             Ok((case, experiment.with_reading(reading)?))

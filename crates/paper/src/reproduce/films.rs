@@ -18,7 +18,7 @@ const FILM_SHOTS: [(&str, f64); 2] = [("dry", 0.3993), ("motor", 0.3993)];
 
 /// The paper's channel, bead sensor plus wall, of one shot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SignalShot {
+pub(crate) struct SignalShot {
     /// The case.
     pub case: String,
     /// Speed in m/s.
@@ -33,7 +33,7 @@ pub struct SignalShot {
 
 /// One shot bead by bead, with its energy.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Film {
+pub(crate) struct Film {
     /// The case.
     pub case: String,
     /// Speed in m/s.

@@ -14,7 +14,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// How the paper's chains are shot.
 #[derive(Clone, Debug)]
-pub struct Gathering<'a> {
+pub(crate) struct Gathering<'a> {
     /// The chains.
     pub cases: &'a Cases,
     /// Speeds of the striker in m/s.
@@ -27,7 +27,7 @@ pub struct Gathering<'a> {
 
 /// How much is known of every shot.
 #[derive(Clone, Copy, Debug)]
-pub enum Effort<'a> {
+pub(crate) enum Effort<'a> {
     /// All numbers, each with the accuracy it reached: every shot is computed again
     /// at a tenth of the tolerance.
     Checked,
@@ -41,7 +41,10 @@ pub enum Effort<'a> {
 ///
 /// # Errors
 /// The first shot that can't be computed, in the order of the tables.
-pub fn gather(how: &Gathering<'_>, done: &(dyn Fn() + Sync)) -> Result<Evidence, ReproduceError> {
+pub(crate) fn gather(
+    how: &Gathering<'_>,
+    done: &(dyn Fn() + Sync),
+) -> Result<Evidence, ReproduceError> {
     gathered(how, None, done)
 }
 

@@ -9,14 +9,13 @@ mod reproduction;
 pub(crate) mod tables;
 
 pub use self::{
-    cases::{CASES, Cases, ReproduceError},
-    gather::{Effort, Gathering, gather},
+    cases::{CASES, ReproduceError},
     provenance::{PROVENANCE, ReproduceProgress, remove_stale_files},
     reproduction::{ReproduceOptions, Reproduction, reproduce},
 };
 pub(crate) use self::{
-    cases::{OILS, SPEEDS_M_S},
+    cases::{Cases, OILS, SPEEDS_M_S},
     films::{Film, SignalShot},
-    gather::{ShotCache, gather_cached},
+    gather::{Effort, Gathering, ShotCache, gather, gather_cached},
     provenance::Provenance,
 };

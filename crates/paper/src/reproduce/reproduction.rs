@@ -54,18 +54,18 @@ pub struct Reproduction {
     /// What the paper leaves open, as read here.
     pub reading: Reading,
     /// The paper's chains.
-    pub cases: Cases,
+    pub(crate) cases: Cases,
     /// Times of flight, peaks and the rest.
     pub evidence: Evidence,
     /// The claims with their verdicts.
     pub evaluated: Vec<EvaluatedClaim>,
     /// The same if the Poisson ratio of the dry balls is 0.3 to one digit, if
     /// readings were asked for.
-    pub two_digits: Option<Vec<EvaluatedClaim>>,
+    pub(crate) two_digits: Option<Vec<EvaluatedClaim>>,
     /// The signals of Fig. 2.
-    pub signals: Vec<SignalShot>,
+    pub(crate) signals: Vec<SignalShot>,
     /// One dry and one wet shot bead by bead.
-    pub films: Vec<Film>,
+    pub(crate) films: Vec<Film>,
     /// Which claims hold in which reading, if that was asked for.
     pub scan: Option<ReadingScan>,
     /// Where the numbers come from.

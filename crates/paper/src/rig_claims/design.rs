@@ -85,7 +85,7 @@ impl Factor {
 
 /// One rig: a value in SI for each of [`FACTORS`], and what is on its contacts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TriedRig {
+pub(crate) struct TriedRig {
     /// In words.
     pub name: String,
     /// The values.
@@ -136,7 +136,7 @@ pub struct RigDesign {
     /// What all rigs have in common: a chain with a push and a `[campaign]`.
     pub experiment: Experiment,
     /// The rigs.
-    pub rigs: Vec<TriedRig>,
+    pub(crate) rigs: Vec<TriedRig>,
     /// How many of the file's speeds, in equal ratios.
     pub speeds: usize,
     /// Shots of a series that count.

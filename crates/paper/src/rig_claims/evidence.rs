@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 /// Shots of equal speed, with taps before each and without.
 #[derive(Clone, Debug)]
-pub struct SpeedSeries {
+pub(crate) struct SpeedSeries {
     /// The speed in m/s.
     pub speed_m_s: f64,
     /// Shots without taps.
@@ -25,7 +25,7 @@ pub struct SpeedSeries {
 
 /// All series of one rig.
 #[derive(Clone, Debug)]
-pub struct Observed {
+pub(crate) struct Observed {
     /// The rig.
     pub rig: TriedRig,
     /// Series by speed, slowest first.
@@ -36,9 +36,9 @@ pub struct Observed {
 #[derive(Clone, Debug, Default)]
 pub struct RigEvidence {
     /// The dry rigs in the design's order: what claims are evaluated on.
-    pub rigs: Vec<Observed>,
+    pub(crate) rigs: Vec<Observed>,
     /// The others, each of which is evaluated alone.
-    pub wet: Vec<Observed>,
+    pub(crate) wet: Vec<Observed>,
 }
 
 impl RigEvidence {

@@ -29,6 +29,6 @@ static PAPER: &str = include_str!("../../data/rig_claims.toml");
 ///
 /// # Errors
 /// When the data file is damaged, which a test rules out.
-pub fn claims() -> Result<Vec<Evaluator<RigEvidence>>, ClaimError> {
+pub(crate) fn claims() -> Result<Vec<Evaluator<RigEvidence>>, ClaimError> {
     read(PAPER, predicates::find)
 }

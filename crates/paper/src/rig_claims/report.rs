@@ -23,7 +23,9 @@ pub struct RigClaims {
     /// On all dry rigs together.
     pub evaluated: Vec<EvaluatedClaim>,
     /// On each alone.
-    pub rigs: Vec<(TriedRig, Vec<EvaluatedClaim>)>,
+    pub(crate) rigs: Vec<(TriedRig, Vec<EvaluatedClaim>)>,
+    /// How many dry rigs there are.
+    pub dry_rigs: usize,
     /// What the rigs did, in words.
     about: String,
 }
@@ -43,6 +45,7 @@ impl RigClaims {
         Ok(Self {
             evaluated: evaluate_all(&evaluators, evidence),
             rigs: alone.collect(),
+            dry_rigs: evidence.rigs.len(),
             about: about(design, evidence),
         })
     }

@@ -24,9 +24,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => return pulses::run(arguments),
     };
     let problem = inference::posed(&pairs(table, arguments)?, arguments)?;
-    for curve in problem.curves() {
-        print_assumed(curve.data(), &arguments.measured);
-        print_stored(curve.model(), &arguments.modelled.set);
+    for curve in &problem.curves {
+        print_assumed(&curve.data, &arguments.measured);
+        print_stored(&curve.model, &arguments.modelled.set);
     }
     pace(&problem, arguments);
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;

@@ -18,7 +18,7 @@ const BAND: f64 = 1.96;
 
 /// Data with the fit and its band; residuals below.
 pub(super) fn fit(table: &TableFit<'_>, inferred: &Inferred) -> Figure {
-    let data = table.curve.data();
+    let data = &table.curve.data;
     let mut figure = Figure::single_column(130.0).share_x();
     for times in [true, false] {
         let shown: Vec<Observable> = Observable::ALL
@@ -41,7 +41,7 @@ fn curves(table: &TableFit<'_>, shown: &[Observable]) -> Chart {
     let label = if times { "Time of flight (µs)" } else { "Ratio of peaks" };
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
     let chart = if times { chart.y_log() } else { chart };
-    let chart = chart.title(table.curve.model().experiment().title());
+    let chart = chart.title(table.curve.model.experiment.title());
     let named = shown.iter().enumerate();
     named.fold(chart, |chart, (at, of)| {
         let line = if at == 0 { "fit" } else { "" };
@@ -51,7 +51,7 @@ fn curves(table: &TableFit<'_>, shown: &[Observable]) -> Chart {
 
 /// Measured points, the fitted line and its 95 % band.
 fn with_curve(table: &TableFit<'_>, chart: Chart, of: Observable, line: &str) -> Chart {
-    let rows = table.curve.data().rows.iter().enumerate();
+    let rows = table.curve.data.rows.iter().enumerate();
     let rows: Vec<_> = rows.filter_map(|(at, row)| Some((at, row, row.value(of)?))).collect();
     let unit = scale(of);
     let column =
@@ -76,7 +76,7 @@ fn with_curve(table: &TableFit<'_>, chart: Chart, of: Observable, line: &str) ->
 /// Standardised residuals against speed, with the band that the parameters' errors
 /// leave the fit, in the same standard errors.
 fn residuals(table: &TableFit<'_>, inferred: &Inferred) -> Chart {
-    let data = table.curve.data();
+    let data = &table.curve.data;
     let label = "Residual (standard errors)";
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log().h_line(0.0, "");
     let residuals = table.curve.measured().zip(table.residuals);

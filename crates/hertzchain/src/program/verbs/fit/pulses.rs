@@ -21,7 +21,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
     let threads = arguments.modelled.threads.map(|threads| threads.0);
     let fit_result = with_notes(threads, || fit_result(recorded, arguments))??;
-    print_stored(fit_result.problem.model(), &arguments.modelled.set);
+    print_stored(&fit_result.problem.model, &arguments.modelled.set);
     let mut all = json(&fit_result, arguments);
     show(arguments, &mut all, || text(&fit_result, arguments))?;
     folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
@@ -29,17 +29,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Everything that is to be said.
 fn text(fit_result: &Pulsed, arguments: &Arguments) -> String {
-    let records = fit_result.problem.records();
+    let records = &fit_result.problem.records;
     let noise = records.iter().flat_map(|record| &record.sigma_v);
     let noise_v = noise.fold(0.0, |most: f64, sigma| most.max(*sigma));
     let mut text = format!(
         "{}\n{} shots sample by sample: {} means of samples, each known to {} mV or better\n\n{}\n{}",
-        heading(fit_result.problem.model().experiment().title()),
+        heading(fit_result.problem.model.experiment.title()),
         records.len(),
         fit_result.problem.residual_count(),
         digits(1e3 * noise_v, 2),
         report::values(&fit_result.inferred),
-        lines(inference::references(fit_result.problem.model()))
+        lines(inference::references(&fit_result.problem.model))
     );
     text +=
         &format!("The model's signals pass the amplifier's filters: {}\n", fit_result.filters());

@@ -20,13 +20,13 @@ pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
     let all = fit_result.tables();
     let titles: String = all.iter().map(|table| title(table, all.len() > 1)).collect();
     let mut references: Vec<String> =
-        all.iter().flat_map(|table| references(table.curve.model())).collect();
+        all.iter().flat_map(|table| references(&table.curve.model)).collect();
     references.dedup();
     let mut text = format!("{titles}\n{}\n{}", values(&fit_result.inferred), lines(references));
     text += &described(&fit_result.inferred);
     text += &accuracy(fit_result);
     text += &lines(fit_result.unasked(arguments));
-    text += &lines(all.iter().filter_map(|table| widened(table.curve.data())).collect());
+    text += &lines(all.iter().filter_map(|table| widened(&table.curve.data)).collect());
     let advice = fit_result.advice.as_ref();
     text += &determined(&fit_result.inferred, &|| advice.map_or(Vec::new(), Advice::words));
     text += &more(&fit_result.inferred);
@@ -39,7 +39,7 @@ pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
 
 /// A table and its model; of several, its share of χ² too.
 fn title(table: &TableFit<'_>, of_several: bool) -> String {
-    let data = table.curve.data();
+    let data = &table.curve.data;
     let case = match data.case.as_str() {
         "" => String::new(),
         case => format!(", {case}"),
@@ -50,7 +50,7 @@ fn title(table: &TableFit<'_>, of_several: bool) -> String {
     };
     format!(
         "{}\n{}{case}: {} values at {} speeds{share}\n",
-        heading(table.curve.model().experiment().title()),
+        heading(table.curve.model.experiment.title()),
         data.file,
         data.value_count(),
         data.rows.len()
@@ -218,7 +218,7 @@ fn runs_text(runs: Runs) -> String {
 
 /// The model's own error against the data's.
 fn accuracy(fit_result: &FitResult) -> String {
-    let rows = fit_result.problem.curves().iter().flat_map(|curve| &curve.data().rows);
+    let rows = fit_result.problem.curves.iter().flat_map(|curve| &curve.data.rows);
     let times = rows.flat_map(|row| row.values.iter().take(2).flatten());
     let relative = times.map(|time| time.sigma / time.value);
     let least = relative.fold(f64::INFINITY, f64::min);

@@ -24,7 +24,7 @@ pub(super) fn run(into: &mut Folder, counter: &Counter) -> Result<String, Failur
     }
     Ok(format!(
         "\nOn {} dry virtual rigs. {MEANING}\n\n{}\nRig by rig: {}; pictures rig_verdicts, rig_spreads, rig_rebounds, rig_gaps\n",
-        evidence.rigs.len(),
+        claims.dry_rigs,
         verdicts(&claims.evaluated),
         into.path().join("rig-claims.md").display(),
     ))
