@@ -31,7 +31,7 @@ pub enum Motion {
 
 impl Motion {
     /// Position in m and velocity in m/s at a time in s.
-    pub fn at(&self, time_s: f64) -> (f64, f64) {
+    pub(crate) fn at(&self, time_s: f64) -> (f64, f64) {
         match self {
             Self::Sine { amplitude_m, frequency_hz } => {
                 let omega = TAU * frequency_hz;

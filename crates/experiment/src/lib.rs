@@ -76,3 +76,7 @@ pub use self::{
     validity::longest_duration_s,
     values::Units,
 };
+
+#[cfg(test)]
+#[path = "../tests/all.rs"]
+mod tests;

@@ -1,8 +1,9 @@
 //! All tests of the crate from outside, as one program: linked once.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
 mod any_input;
 mod campaign;
+mod mistakes;
 mod one_mistake;
 mod paths;
 mod presets;

@@ -1,7 +1,7 @@
 //! No input makes the reader panic.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use hertzchain_experiment::{Experiment, Reading, examples, presets};
+use crate::{Experiment, Reading, examples, presets};
 use proptest::prelude::*;
 
 /// Reads a text and goes on as far as it can.
@@ -183,5 +183,5 @@ fn deep_nesting_is_refused_without_a_deep_stack() {
     let lists = format!("title = {}{}", "[".repeat(depth), "]".repeat(depth));
     assert!(Experiment::from_text("any.toml", &lists).is_err());
     let unit = format!("{}m{}", "(".repeat(depth), ")".repeat(depth));
-    assert!(hertzchain_experiment::units::parse_unit(&unit).is_err());
+    assert!(crate::units::parse_unit(&unit).is_err());
 }

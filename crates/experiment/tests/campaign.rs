@@ -1,8 +1,8 @@
 //! What a file says of a rig's campaign.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use hertzchain_experiment::units::parse_quantity;
-use hertzchain_experiment::{Experiment, Finding, LowPass, Trigger, campaigns, preset, schema};
+use crate::units::parse_quantity;
+use crate::{Experiment, Finding, LowPass, Trigger, campaigns, preset, schema};
 
 const PAPER: &str = include_str!("../../../experiments/paper.toml");
 

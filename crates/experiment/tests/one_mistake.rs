@@ -1,6 +1,6 @@
 //! One slip of the pen is one report.
 
-use hertzchain_experiment::Experiment;
+use crate::Experiment;
 
 #[test]
 fn a_misspelt_law_parameter_is_not_missed_as_well() {

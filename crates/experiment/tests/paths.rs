@@ -1,8 +1,8 @@
 //! Named numbers: found, read, set.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
+use crate::{Experiment, PathError, examples, preset, presets};
 use hertzchain_chain::{BeadPair, Start};
-use hertzchain_experiment::{Experiment, PathError, examples, preset, presets};
 
 #[test]
 fn every_number_of_every_file_is_found_by_its_path_and_can_be_set_to_itself() {
@@ -152,7 +152,7 @@ fn a_case_that_was_chosen_stays_when_numbers_are_set() {
     let paper = preset("paper").unwrap();
     let gear = paper.case("gear").unwrap().unwrap();
     let slower = gear.with_speed(0.3).unwrap();
-    let laws = |experiment: &hertzchain_experiment::Experiment| {
+    let laws = |experiment: &crate::Experiment| {
         let (chain, _) = experiment.chain(Some(0.3)).unwrap();
         format!("{:?}", chain.sections)
     };

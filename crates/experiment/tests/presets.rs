@@ -1,8 +1,8 @@
 //! The files that come with the program, against the numbers they stand for.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
+use crate::{examples, preset, presets};
 use hertzchain_chain::{Bead, BeadPair, Chain, FarEnd, Material, Start};
-use hertzchain_experiment::{examples, preset, presets};
 
 fn chain(name: &str, speed_m_s: Option<f64>) -> Chain {
     preset(name).unwrap().chain(speed_m_s).unwrap().0

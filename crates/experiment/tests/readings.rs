@@ -1,8 +1,8 @@
 //! A switch changes what it says and nothing else.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
+use crate::{Experiment, Pick, Reading, preset, presets};
 use hertzchain_chain::{Chain, FarEnd, Push, Sensor, Tension};
-use hertzchain_experiment::{Experiment, Pick, Reading, preset, presets};
 
 fn in_reading(name: &str, switches: &[(&str, &str)]) -> Experiment {
     let reading = switches

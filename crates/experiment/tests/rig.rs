@@ -1,7 +1,7 @@
 //! The table of what stands around the chain: read, checked, without effect.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use hertzchain_experiment::{Experiment, Finding, RigPartKind, preset, schema};
+use crate::{Experiment, Finding, RigPartKind, preset, schema};
 
 const DRY: &str = include_str!("../../../experiments/dry.toml");
 

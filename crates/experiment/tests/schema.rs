@@ -1,8 +1,8 @@
 //! The JSON Schema describes the files that the program reads.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
+use crate::{Experiment, examples, presets, schema};
 use hertzchain_chain::laws::LAWS;
-use hertzchain_experiment::{Experiment, examples, presets, schema};
 use serde_json::{Value, json};
 
 /// The part of JSON Schema that the schema uses; anything else is an error.

@@ -1,8 +1,8 @@
 //! Chains that no striker hits: driven ends, initial states, rings, gaps.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
+use crate::{Experiment, Method};
 use hertzchain_chain::{FarEnd, Gap, Motion, Push, Sensor, Start};
-use hertzchain_experiment::{Experiment, Method};
 
 const BEADS: &str = "
 [materials.steel]

@@ -1,9 +1,9 @@
 //! Which K a damping law has that shares it with the elastic contact.
 
+use crate::{Experiment, Mistakes};
 use hertzchain_chain::laws::{LAWS, Nature, Source};
 use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_chain::{Chain, System};
-use hertzchain_experiment::{Experiment, Mistakes};
 use std::f64::consts::PI;
 
 /// Laws that share K, with what else they need.

@@ -2,7 +2,7 @@
 //! calculator.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use hertzchain_experiment::units::{parse_quantity, parse_unit};
+use crate::units::{parse_quantity, parse_unit};
 use proptest::prelude::*;
 
 fn value(text: &str) -> f64 {

@@ -24,7 +24,7 @@ mod text;
 
 pub use self::{
     animation::Animation,
-    chart::{Chart, Dash, Legend, Marker, Series, case_look},
+    chart::{Chart, Dash, Marker, Series, case_look},
     draw::{Colour, ColourMap},
     figure::{Figure, Panel},
     files::FigureError,

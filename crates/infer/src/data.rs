@@ -36,7 +36,7 @@ impl Observable {
     }
 
     /// What it is called.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Incident => "incident ToF",
             Self::Reflected => "reflected ToF",

@@ -35,10 +35,7 @@ pub use self::{
     goodness::{Goodness, Largest, Runs, largest_residual, runs},
     identify::{Identifiability, UnidentifiableDirection},
     least_squares::{Binding, Ending, Fit, Fitting, Jacobian, Loss, Started, fit},
-    problem::{
-        Batch, Compute, ModelError, Outcomes, Parameter, Prior, Problem, Residuals, Response,
-        Spread, titled,
-    },
+    problem::{Batch, ModelError, Outcomes, Parameter, Prior, Problem, Residuals, Spread, titled},
     profile::{End, Interval, Profile, Profiling, RISE_OF_95_PERCENT, profile},
     pulses::{PulseProblem, Pulses, Respond},
     sampler::{

@@ -1,7 +1,7 @@
 //! Free parameters, their priors, and the residuals that a fit minimises.
 
 use crate::InferError;
-use hertzchain_sim::{Fingerprint, Inputs, count_done};
+use hertzchain_sim::{Fingerprint, count_done};
 use std::fmt;
 use std::sync::OnceLock;
 
@@ -71,7 +71,7 @@ const EXCLUDED_SD: f64 = 6.0;
 impl Prior {
     /// (θ − mean)/sd, of the logarithm for a log-normal prior: what a fit adds to its residuals.
     /// `None` of a flat prior; infinite where impossible.
-    pub fn residual(&self, value: f64) -> Option<f64> {
+    pub(crate) fn residual(&self, value: f64) -> Option<f64> {
         match *self {
             Self::Flat => None,
             Self::Normal { mean, sd } => Some((value - mean) / sd),
@@ -136,7 +136,7 @@ impl Parameter {
     ///
     /// # Errors
     /// The first thing that does not fit.
-    pub fn check(&self) -> Result<(), InferError> {
+    pub(crate) fn check(&self) -> Result<(), InferError> {
         let (name, prior) = (&self.name, &self.prior);
         let [start, lower, upper] = [self.start, self.lower, self.upper].map(short);
         if self.lower.is_nan() || self.upper.is_nan() || self.lower >= self.upper {
@@ -200,7 +200,7 @@ pub trait Problem: Sync {
 }
 
 /// Residuals, by number, that a measured number enters, with their derivatives by it.
-pub type Response = Vec<(usize, f64)>;
+pub(crate) type Response = Vec<(usize, f64)>;
 
 /// Residuals at one point.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -242,9 +242,7 @@ impl Batch {
     /// fill the lanes of a batch of shots: a point's curve has a lane for each speed already.
     pub fn cut(problem: &Fingerprint, points: &[Vec<f64>], size: usize) -> Vec<Self> {
         let batch = |points: &[Vec<f64>]| {
-            let inputs = Inputs::of("batch").work("problem", problem);
-            let add = |inputs: Inputs, point: &Vec<f64>| inputs.numbers("point", point);
-            let name = points.iter().fold(inputs, add).fingerprint();
+            let name = Fingerprint::of("batch", &(problem, points));
             Self { name, points: points.to_vec() }
         };
         points.chunks(size.max(1)).map(batch).collect()
@@ -257,7 +255,7 @@ impl Batch {
 }
 
 /// Computes batches elsewhere: outcomes of all of them, in order, or why there are none.
-pub type Compute<'a> = dyn Fn(&[Batch]) -> Result<Vec<Outcomes>, String> + Sync + 'a;
+pub(crate) type Compute<'a> = dyn Fn(&[Batch]) -> Result<Vec<Outcomes>, String> + Sync + 'a;
 
 /// A problem whose residuals are computed elsewhere: a fit, a profile or a sampler that is given it
 /// in the problem's place has the same bits.
@@ -274,20 +272,16 @@ pub struct Spread<'a> {
 }
 
 impl<'a> Spread<'a> {
-    /// Of a problem by its fingerprint, in batches of at most `size` points.
+    /// Of a problem by its fingerprint, in batches of at most `size` points: fewer where so many
+    /// workers would otherwise not all have one.
     pub fn new(
         problem: &'a dyn Problem,
         fingerprint: Fingerprint,
-        size: usize,
+        (size, workers): (usize, usize),
         compute: &'a Compute<'a>,
     ) -> Self {
         let failure = OnceLock::new();
-        Self { problem, fingerprint, size, workers: 1, compute, failure }
-    }
-
-    /// The same in smaller batches where so many workers would otherwise not all have one.
-    pub fn among(self, workers: usize) -> Self {
-        Self { workers, ..self }
+        Self { problem, fingerprint, size, workers, compute, failure }
     }
 
     /// Why a batch could not be computed, if one could not.

@@ -11,6 +11,7 @@ mod dry;
 #[path = "../tests/signal/common/source.rs"]
 mod source;
 
+use hertzchain_measure::signal;
 use hertzchain_measure::signal::{
     Channels, Estimate, Flight, QualityFlag, SignalOptions, coverage, measure, median,
 };

@@ -11,6 +11,7 @@ mod common;
 
 use common::Scene;
 use hertzchain_measure::records::{Parts, ReadOptions};
+use hertzchain_measure::signal;
 use hertzchain_measure::{Cut, Level, Options, measure};
 use rust_hdf5::H5File;
 use std::error::Error;

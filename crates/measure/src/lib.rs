@@ -31,3 +31,7 @@ pub use self::{
     shot::{Example, Shot},
     table::{laws_csv, ratios_csv, shots_csv, speeds_csv, write_shots},
 };
+
+#[cfg(test)]
+#[path = "../tests/signal/main.rs"]
+mod tests;

@@ -3,7 +3,7 @@
 use crate::calibration::Calibration;
 use crate::engine::{Control, run_plans};
 use crate::error::StudyError;
-use crate::fingerprint::{Fingerprint, Inputs};
+use crate::fingerprint::Fingerprint;
 use crate::plan::Plan;
 use crate::result::Rows;
 use crate::shard::Shard;
@@ -30,7 +30,7 @@ pub enum ErrorControl {
 
 impl ErrorControl {
     /// Its name, as options have it.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::PerShot => "per-shot",
             Self::Calibrated => "calibrated",
@@ -204,13 +204,8 @@ impl Batch {
     /// paths, times or machines.
     pub fn fingerprint(&self) -> Fingerprint {
         *self.fingerprint.get_or_init(|| {
-            let inputs = Inputs::of("sweep")
-                .text("experiment", &self.experiment.canonical_text())
-                .text("options", &format!("{:?}", self.options))
-                .numbers("speeds_m_s", &self.speeds_m_s);
-            let numbers = self.numbers.iter();
-            let all = numbers.fold(inputs, |inputs, (path, values)| inputs.numbers(path, values));
-            all.fingerprint()
+            let experiment = self.experiment.canonical_text();
+            Fingerprint::of("sweep", &(experiment, &self.options, &self.speeds_m_s, &self.numbers))
         })
     }
 

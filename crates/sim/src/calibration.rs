@@ -177,7 +177,11 @@ impl Calibration {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn new(plans: &[Plan], by_speed: bool, set: InstructionSet) -> Result<Self, &'static str> {
+    pub(crate) fn new(
+        plans: &[Plan],
+        by_speed: bool,
+        set: InstructionSet,
+    ) -> Result<Self, &'static str> {
         let first = plans.first().ok_or("no shot can be computed")?;
         let system = first.chain.system().map_err(|_| "no shot can be computed")?;
         let family = |plan: &Plan| belongs(plan, (first, &system));

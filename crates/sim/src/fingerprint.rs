@@ -27,6 +27,14 @@ impl Fingerprint {
         bytes.try_into().ok().filter(|_| whole).map(Self)
     }
 
+    /// Of work of a kind by this build of the program (another may make other bits), from all its
+    /// inputs: their `Debug` text has every bit of a number and quotes texts, so that no two lists
+    /// of inputs are alike.
+    pub fn of(kind: &str, inputs: &dyn Debug) -> Self {
+        let build = (env!("CARGO_PKG_VERSION"), commit());
+        Self::of_bytes(format!("{kind:?} {build:?} {inputs:?}").as_bytes())
+    }
+
     /// Of the bytes of a result, to see that it is whole.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         Self(Sha256::digest(bytes).into())
@@ -42,56 +50,6 @@ impl Display for Fingerprint {
 impl Debug for Fingerprint {
     fn fmt(&self, f: &mut Formatter<'_>) -> Formatted {
         write!(f, "Fingerprint({self})")
-    }
-}
-
-/// Inputs as they are gathered for a [`Fingerprint`]: each with its name and
-/// length, so that no two lists of inputs are the same bytes.
-#[derive(Clone, Debug)]
-pub struct Inputs(Sha256);
-
-impl Inputs {
-    /// Of work of a kind by this build of the program: another may make other bits.
-    pub fn of(kind: &str) -> Self {
-        let inputs = Self(Sha256::new()).text("kind", kind);
-        inputs
-            .text("version", env!("CARGO_PKG_VERSION"))
-            .text("commit", &commit().unwrap_or_default())
-    }
-
-    /// With a text.
-    pub fn text(self, name: &str, text: &str) -> Self {
-        self.bytes(name, text.as_bytes())
-    }
-
-    /// With numbers, bit for bit.
-    pub fn numbers(self, name: &str, values: &[f64]) -> Self {
-        let bytes: Vec<u8> =
-            values.iter().flat_map(|value| value.to_bits().to_le_bytes()).collect();
-        self.bytes(name, &bytes)
-    }
-
-    /// With a whole number.
-    pub fn count(self, name: &str, count: u64) -> Self {
-        self.bytes(name, &count.to_le_bytes())
-    }
-
-    /// With what another fingerprint stands for.
-    pub fn work(self, name: &str, of: &Fingerprint) -> Self {
-        self.bytes(name, &of.0)
-    }
-
-    /// All of them.
-    pub fn fingerprint(self) -> Fingerprint {
-        Fingerprint(self.0.finalize().into())
-    }
-
-    fn bytes(mut self, name: &str, bytes: &[u8]) -> Self {
-        for part in [name.as_bytes(), bytes] {
-            self.0.update((part.len() as u64).to_le_bytes());
-            self.0.update(part);
-        }
-        self
     }
 }
 

@@ -42,7 +42,7 @@ pub use self::{
     describe::{Group, Row, Value, describe, describe_theory, dimensionless_unit},
     engine::{Control, LONGER_STEPS, run_plans},
     error::StudyError,
-    fingerprint::{Fingerprint, Inputs, commit},
+    fingerprint::{Fingerprint, commit},
     long_work::Expected,
     plan::{Plan, PreparedChain, Watch},
     result::{COLUMNS, Column, Failed, Law, Rows, WarningSummary},

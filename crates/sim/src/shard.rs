@@ -72,7 +72,7 @@ impl Shard {
     }
 
     /// Whether a shot or a series, by its place from 0, is in this shard.
-    pub fn holds(self, place: usize) -> bool {
+    pub(crate) fn holds(self, place: usize) -> bool {
         place % self.of == self.number - 1
     }
 

@@ -6,9 +6,7 @@ mod signal;
 mod tracer;
 
 pub use self::{
-    passage::{
-        Competing, Flank, Passage, PassageError, Passages, Pulse, RETURN_WITHIN, WALL_WITHIN,
-    },
+    passage::{Competing, Passage, PassageError, Passages, Pulse, RETURN_WITHIN, WALL_WITHIN},
     separation::{Apart, Separation},
     signal::{Maximum, Shape, Signal, Stretch},
     tracer::{Trace, Tracer},

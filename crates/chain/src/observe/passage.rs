@@ -121,9 +121,6 @@ pub struct Passage {
     pub reflected_width_s: Option<f64>,
 }
 
-/// A threshold on the rising flank of a pulse, as a fraction of its peak.
-pub type Flank = f64;
-
 /// Maxima below this fraction of the largest are not reported.
 const REPORTED: f64 = 0.05;
 
@@ -306,7 +303,7 @@ impl Passages {
 
     /// When the rising flank of the incident, wall and reflected pulse passes
     /// a fraction of its peak, in s.
-    pub fn flanks(&self, passage: &Passage, at: Flank) -> [Option<f64>; 3] {
+    pub fn flanks(&self, passage: &Passage, at: f64) -> [Option<f64>; 3] {
         let rise =
             |signal: &Signal, peak: Maximum| crossing(signal, peak, at * peak.value, Side::Before);
         [

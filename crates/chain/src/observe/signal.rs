@@ -40,7 +40,7 @@ pub struct Stretch {
 
 impl Stretch {
     /// The quartic through the five values.
-    pub fn at(&self, time_s: f64) -> f64 {
+    pub(crate) fn at(&self, time_s: f64) -> f64 {
         let s = 4.0 * (time_s - self.start_s) / self.length_s;
         let [f0, f1, f2, f3, f4] = self.values;
         // Newton's forward differences.

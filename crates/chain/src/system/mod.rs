@@ -148,7 +148,7 @@ impl System {
     }
 
     /// Whether the chain has a place for a sensor.
-    pub fn has(&self, sensor: Sensor) -> bool {
+    pub(crate) fn has(&self, sensor: Sensor) -> bool {
         let bead = |n: usize| (1..=self.beads()).contains(&n);
         match sensor {
             Sensor::Bead(n) | Sensor::BeadPlusWall(n) => bead(n),

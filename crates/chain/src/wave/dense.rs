@@ -208,7 +208,7 @@ impl Piece<'_> {
     }
 
     /// Dynamic force of a contact in N: its force less the static one.
-    pub fn force(&self, contact: usize, theta: f64) -> f64 {
+    pub(crate) fn force(&self, contact: usize, theta: f64) -> f64 {
         let (overlap, rate) = self.overlap(contact, theta);
         self.force_at(contact, overlap, rate) - self.system.static_force_n[contact]
     }

@@ -2,7 +2,7 @@
 
 use super::{DRY, after, check, line_of, only};
 
-fn says(finding: &hertzchain_experiment::Finding, words: &[&str]) {
+fn says(finding: &crate::Finding, words: &[&str]) {
     for word in words {
         let line = finding.one_line();
         assert!(line.contains(word), "{line} lacks {word}");
@@ -46,7 +46,7 @@ fn beads_in_cells_and_several_groups_are_counted() {
     says(&only(&text.replace("bead = 7", "bead = 0")), &["from 1 to 21"]);
     // A count in error leaves the chain's length open, and is reported as well.
     let unknown = text.replace("repeat = 5", "repeat = \"5\"").replace("bead = 7", "bead = 0");
-    let mistakes = hertzchain_experiment::Experiment::from_text("test.toml", &unknown);
+    let mistakes = crate::Experiment::from_text("test.toml", &unknown);
     let reported = mistakes.unwrap_err().to_string();
     assert!(reported.contains("`repeat` is text") && reported.contains("`bead` = 0"), "{reported}");
 }

@@ -1,8 +1,8 @@
 //! Steps and durations with which no shot comes to a sensible end.
 
 use super::{DRY, check, line_of, only, refused};
+use crate::Experiment;
 use hertzchain_chain::wave::{Limits, Method, run};
-use hertzchain_experiment::Experiment;
 
 const STRIKER: &str = "[striker]\nspeed = \"0.5 m/s\"";
 

@@ -1,7 +1,7 @@
 //! Keys, options and TOML itself.
 
 use super::{DRY, after, check, line_of, only};
-use hertzchain_experiment::Experiment;
+use crate::Experiment;
 
 #[test]
 fn an_unknown_key_names_the_nearest_and_all() {

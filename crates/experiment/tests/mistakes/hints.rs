@@ -2,7 +2,7 @@
 
 use super::{DRY, after, check, line_of, only};
 
-fn says(finding: &hertzchain_experiment::Finding, words: &str) {
+fn says(finding: &crate::Finding, words: &str) {
     let line = finding.one_line();
     assert!(line.contains(words), "{line} lacks {words}");
 }

@@ -1,7 +1,7 @@
 //! Contact laws and their parameters.
 
 use super::{DRY, after, check, line_of, only, refused};
-use hertzchain_experiment::Experiment;
+use crate::Experiment;
 
 #[test]
 fn a_law_s_missing_parameter_is_shown_with_its_unit() {

@@ -1,7 +1,7 @@
 //! Parts that must fit together.
 
 use super::{DRY, after, check, line_of, only, refused};
-use hertzchain_experiment::Experiment;
+use crate::Experiment;
 
 #[test]
 fn a_sensor_outside_the_chain_is_told_the_chain() {

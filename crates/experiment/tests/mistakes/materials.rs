@@ -1,7 +1,7 @@
 //! Materials and masses.
 
 use super::{DRY, after, check, line_of, only};
-use hertzchain_experiment::{Experiment, preset};
+use crate::{Experiment, preset};
 use miette::Diagnostic;
 
 #[test]

@@ -1,7 +1,7 @@
 //! Numbers and their units.
 
 use super::{DRY, after, check, line_of, only};
-use hertzchain_experiment::{Experiment, examples, preset, presets};
+use crate::{Experiment, examples, preset, presets};
 
 #[test]
 fn a_wrong_dimension_names_the_expected_unit() {

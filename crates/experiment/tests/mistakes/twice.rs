@@ -1,11 +1,11 @@
 //! What stands in a file twice: one report that shows both places.
 
 use super::{DRY, after, check, line_of, only};
-use hertzchain_experiment::Experiment;
+use crate::Experiment;
 use miette::Diagnostic;
 
 /// How many places a report underlines.
-fn places(finding: &hertzchain_experiment::Finding) -> usize {
+fn places(finding: &crate::Finding) -> usize {
     finding.labels().map_or(0, Iterator::count)
 }
 

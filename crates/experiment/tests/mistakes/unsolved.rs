@@ -1,8 +1,8 @@
 //! What shows only while a shot runs still has a place in the file.
 
 use super::{DRY, check, line_of};
+use crate::{Experiment, Finding};
 use hertzchain_chain::wave::SolveError;
-use hertzchain_experiment::{Experiment, Finding};
 
 fn only(experiment: &Experiment, error: &SolveError) -> Finding {
     experiment.unsolved(error).findings()[0].clone()

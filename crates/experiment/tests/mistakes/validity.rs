@@ -1,9 +1,9 @@
 //! Laws that are used beyond what they are for.
 
 use super::{DRY, check, line_of, refused};
+use crate::{Experiment, Warning, examples, presets};
 use hertzchain_chain::laws::{LAWS, Nature, Row, Source};
 use hertzchain_chain::theory::two_body::ElasticCollision;
-use hertzchain_experiment::{Experiment, Warning, examples, presets};
 use miette::Diagnostic;
 
 const CUBIC: &str = "coefficient = \"77 kg s/m^2\"";

@@ -1,6 +1,6 @@
 //! Scales, ticks and legend of a chart and the room they need, before anything is drawn.
 
-use super::{Axis, Chart, LABEL, Legend, PAD, SMALL, Series, SeriesKind, strokes};
+use super::{Axis, Chart, LABEL, PAD, SMALL, Series, SeriesKind, strokes};
 use crate::axis::{Extent, Room, Scale, Ticks, ticks};
 use crate::draw::{Canvas, Colour, Item, Margins, Point, Rect};
 use crate::text::{Anchor, TextLine};
@@ -182,7 +182,7 @@ impl LegendBox {
     /// As few rows as `widest` allows, their columns aligned.
     fn new(chart: &Chart, widest: f64) -> Self {
         let named = chart.series.iter().enumerate();
-        let named = named.filter(|(_, s)| chart.legend == Legend::Auto && !s.name.is_empty());
+        let named = named.filter(|(_, s)| chart.legend && !s.name.is_empty());
         let mut lines = named.clone().filter(|(_, s)| s.has_line() || s.is_band());
         let sample = if lines.next().is_some() { 2.6 * SMALL } else { SMALL };
         let room = widest - sample - 1.2 * SMALL;

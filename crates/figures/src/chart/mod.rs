@@ -30,16 +30,6 @@ pub(crate) struct ReferenceLine {
     pub(crate) vertical: bool,
 }
 
-/// Whether a chart has a legend.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Legend {
-    /// Above the frame, where there are names.
-    #[default]
-    Auto,
-    /// No legend.
-    Off,
-}
-
 /// A diagram with two axes.
 ///
 /// Labels are in the markup of this crate: `$v_0$ (m/s)`, `$10^{-5}$`, `$\Delta$`.
@@ -51,7 +41,8 @@ pub struct Chart {
     pub(crate) series: Vec<Series>,
     pub(crate) references: Vec<ReferenceLine>,
     pub(crate) notes: Vec<String>,
-    pub(crate) legend: Legend,
+    /// Whether names of series stand above the frame.
+    pub(crate) legend: bool,
     pub(crate) heat: Option<HeatMap>,
 }
 
@@ -66,7 +57,7 @@ impl Chart {
             series: Vec::new(),
             references: Vec::new(),
             notes: Vec::new(),
-            legend: Legend::default(),
+            legend: true,
             heat: None,
         }
     }
@@ -135,8 +126,8 @@ impl Chart {
         self
     }
 
-    /// Switches the legend off or on.
-    pub fn legend(mut self, legend: Legend) -> Self {
+    /// Whether names of series stand above the frame; they do by default.
+    pub fn legend(mut self, legend: bool) -> Self {
         self.legend = legend;
         self
     }

@@ -1,7 +1,7 @@
 //! A posterior, parameter by parameter and pair by pair.
 
 use super::density::{histogram, joint, level};
-use crate::{Chart, Colour, ColourMap, Dash, Figure, HeatMap, Legend, Panel, Series};
+use crate::{Chart, Colour, ColourMap, Dash, Figure, HeatMap, Panel, Series};
 use std::f64::consts::TAU;
 
 /// Samples of several parameters.
@@ -56,7 +56,7 @@ impl Corner<'_> {
 
     fn empty(&self, row: usize, column: usize, count: usize, x: (f64, f64)) -> Chart {
         let mut chart = Chart::new(&self.labels[column], &self.labels[row]).x_range(x.0, x.1);
-        chart.legend = Legend::Off;
+        chart.legend = false;
         chart.x.unlabelled = row + 1 != count;
         chart.y.unlabelled = column != 0 || row == 0;
         match self.marks.get(column) {
@@ -82,7 +82,7 @@ impl Corner<'_> {
             _ => [""; 2],
         };
         if k == 0 {
-            chart.legend = Legend::Auto;
+            chart.legend = true;
         }
         let chart = chart
             .with(

@@ -89,7 +89,7 @@ fn limit(found: &Profile, is_above: bool) -> Option<Limit> {
 
 impl Limit {
     /// "at most" or "at least".
-    pub const fn side(&self) -> &'static str {
+    pub(crate) const fn side(&self) -> &'static str {
         match self.is_above {
             true => "at most",
             false => "at least",

@@ -200,7 +200,7 @@ impl Pulsed {
     }
 
     /// The amplifier's filters that the model's signals have passed, in words.
-    pub fn filters(&self) -> String {
+    pub(crate) fn filters(&self) -> String {
         let model = &self.problem.model;
         let mut amplifier = model.experiment.campaign().amplifier;
         let mut numbers = model.numbers.iter();

@@ -23,7 +23,7 @@ impl Given {
     ///
     /// # Errors
     /// Text that is no positive speed.
-    pub fn speed(text: &str) -> Result<Self, StudyError> {
+    pub(crate) fn speed(text: &str) -> Result<Self, StudyError> {
         Ok(Self {
             text: text.trim().to_owned(),
             value: parse_speed(text)?,
@@ -41,7 +41,7 @@ impl Given {
     ///
     /// # Errors
     /// Text that is no positive time.
-    pub fn time(text: &str) -> Result<Self, String> {
+    pub(crate) fn time(text: &str) -> Result<Self, String> {
         Ok(Self {
             text: text.trim().to_owned(),
             value: parse_time(text).map_err(|error| error.to_string())?,

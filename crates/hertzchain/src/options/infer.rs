@@ -259,7 +259,7 @@ pub enum Filter {
 
 impl Filter {
     /// Order and kind as an experiment file names them.
-    pub const fn names(self) -> (&'static str, Option<&'static str>) {
+    pub(crate) const fn names(self) -> (&'static str, Option<&'static str>) {
         let (butterworth, bessel) = (Some("butterworth"), Some("bessel"));
         match self {
             Self::First => ("first", None),

@@ -28,7 +28,7 @@ pub enum Kind {
 
 impl Kind {
     /// All of them, in their order.
-    pub const ALL: [Self; 5] =
+    pub(crate) const ALL: [Self; 5] =
         [Self::Incident, Self::Reflected, Self::Ratio, Self::Sensor, Self::Preload];
 }
 

@@ -6,7 +6,7 @@ use super::problem::MeasuredCurve;
 use crate::data::{Data, Observable};
 use crate::problem::{ModelError, Problem, Residuals, Response};
 use crate::{InferError, Parameter, Prior};
-use hertzchain_sim::{Fingerprint, Inputs};
+use hertzchain_sim::Fingerprint;
 
 /// Where a parameter of one curve's model comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,8 +127,7 @@ impl CurveProblem {
         match &self.curves[..] {
             [only] => of(only),
             all => {
-                let add = |inputs: Inputs, curve| inputs.work("curve", &of(curve));
-                all.iter().fold(Inputs::of("curve problems"), add).fingerprint()
+                Fingerprint::of("curve problems", &all.iter().map(of).collect::<Vec<Fingerprint>>())
             }
         }
     }

@@ -5,10 +5,10 @@ use crate::free::{FreeNumbers, Settings};
 use crate::problem::ModelError;
 use hertzchain_experiment::{Amplifier, Experiment, Mistakes, PathError};
 use hertzchain_sim::{
-    Control, Inputs, InstructionSet, Plan, Shot, StudyError, count_done, run_plans, stopped,
+    Control, InstructionSet, Plan, Shot, StudyError, count_done, run_plans, stopped,
 };
 use rayon::prelude::*;
-use std::fmt::Display;
+use std::fmt::{Debug, Display};
 
 /// What a model predicts at one speed, in the order of
 /// [`Observable::ALL`](crate::Observable::ALL); `None` where no such pulse is seen.
@@ -95,13 +95,9 @@ impl Model {
 
     /// What names any problem of this model begins with: the experiment as it is understood,
     /// its free numbers, what is known of their parameters, accuracy and instruction set.
-    pub(crate) fn inputs(&self, kind: &str, parameters: &[Parameter]) -> Inputs {
-        Inputs::of(kind)
-            .text("experiment", &self.experiment.canonical_text())
-            .text("free", &format!("{:?}", self.numbers))
-            .text("parameters", &format!("{parameters:?}"))
-            .text("set", self.set.name())
-            .numbers("accuracy", &[self.accuracy])
+    pub(crate) fn inputs(&self, parameters: &[Parameter]) -> impl Debug {
+        let experiment = self.experiment.canonical_text();
+        format!("{:?}", (experiment, &self.numbers, parameters, self.set.name(), self.accuracy))
     }
 
     /// Predictions at all speeds for every point.

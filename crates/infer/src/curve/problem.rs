@@ -7,7 +7,7 @@ use super::whiten::{Errors, whiten};
 use crate::Parameter;
 use crate::data::{Data, DataRow, Observable};
 use crate::problem::{ModelError, Residuals, Response};
-use hertzchain_sim::{Fingerprint, Inputs};
+use hertzchain_sim::Fingerprint;
 
 /// Relative distance of the speeds around each row's, where there are too
 /// few rows to determine a slope.
@@ -64,10 +64,8 @@ impl MeasuredCurve {
 
     /// Of all that its residuals follow from in a problem with these parameters.
     pub(super) fn fingerprint(&self, parameters: &[Parameter]) -> Fingerprint {
-        let inputs = self.model.inputs("curve problem", parameters);
-        let inputs = inputs.text("supplies", &format!("{:?}", self.supplies));
-        let row = |inputs: Inputs, row: &DataRow| inputs.text("row", &format!("{row:?}"));
-        self.data.rows.iter().fold(inputs, row).fingerprint()
+        let model = self.model.inputs(parameters);
+        Fingerprint::of("curve problem", &(model, &self.supplies, &self.data.rows))
     }
 
     pub(super) fn with_accuracy(self, accuracy: f64) -> Self {

@@ -7,7 +7,7 @@ use crate::problem::{ModelError, Problem, Residuals};
 use crate::{InferError, Parameter};
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::Amplifier;
-use hertzchain_sim::{Fingerprint, Inputs, Shot, count_done, shoot, stopped};
+use hertzchain_sim::{Fingerprint, Shot, count_done, shoot, stopped};
 use rayon::prelude::*;
 use std::fmt;
 use std::sync::Arc;
@@ -139,18 +139,13 @@ impl PulseProblem {
     /// amplifier among it, its free numbers, the records, accuracy and instruction set, this
     /// build of the program; not where the records lie.
     pub fn fingerprint(&self) -> Fingerprint {
-        let all = self.model.inputs("pulse problem", &self.parameters);
-        let record = |all: Inputs, record: &Pulses| {
-            let speed = record.speed_m_s;
-            let speeds = [speed.value, speed.sigma, record.programmed_m_s];
-            let times = [record.interval_s, record.start_s, record.passing_s];
-            let all = all.numbers("speeds", &speeds).numbers("times", &times);
-            let all = all.count("width", record.width as u64);
-            let all = all.numbers("noise", &record.sigma_v);
-            let channels = record.means_v.iter();
-            channels.fold(all, |all, means_v| all.numbers("means", means_v))
+        let record = |of: &Pulses| {
+            let times = [of.interval_s, of.start_s, of.passing_s];
+            let speeds = (of.speed_m_s, of.programmed_m_s);
+            format!("{:?}", (speeds, times, of.width, &of.sigma_v, &of.means_v))
         };
-        self.records.iter().fold(all, record).fingerprint()
+        let records: Vec<String> = self.records.iter().map(record).collect();
+        Fingerprint::of("pulse problem", &(self.model.inputs(&self.parameters), records))
     }
 
     /// Numbers fitted to single records: offsets, moments and errors of speeds.

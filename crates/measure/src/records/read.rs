@@ -109,7 +109,7 @@ impl Iterator for Records {
 
 impl Records {
     /// A record in memory, divided and checked as those of a file.
-    pub fn of(record: Record, options: &ReadOptions) -> Self {
+    pub(crate) fn of(record: Record, options: &ReadOptions) -> Self {
         let file = record.file.clone();
         Self::new(&file, Box::new(std::iter::once(Ok(record))), options)
     }

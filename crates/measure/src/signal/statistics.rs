@@ -15,7 +15,7 @@ impl Estimate {
     }
 
     /// Quotient of two independent numbers, errors to first order.
-    pub fn over(self, other: Self) -> Self {
+    pub(crate) fn over(self, other: Self) -> Self {
         let value = self.value / other.value;
         let sigma = (self.sigma / other.value).hypot(value * other.sigma / other.value);
         Self { value, sigma }

@@ -1,8 +1,8 @@
 //! Maxima as they were before an amplifier's low-pass.
 
-use crate::dry::Dry;
-use hertzchain_measure::MeasureError;
-use hertzchain_measure::signal::{Bandwidth, Channels, SignalOptions, measure};
+use crate::MeasureError;
+use crate::signal::{Bandwidth, Channels, SignalOptions, measure};
+use crate::tests::dry::Dry;
 use std::f64::consts::{SQRT_2, TAU};
 
 /// A computed shot behind a low-pass, by Euler's method in steps of 10 ns.

@@ -1,10 +1,8 @@
 //! Sensors of unlike sensitivity, and a wall's channel that is late.
 
-use crate::common::{Scene, channels};
-use hertzchain_measure::MeasureError;
-use hertzchain_measure::signal::{
-    Channels, Measured, PulseKind, SensorCalibration, SignalOptions, measure,
-};
+use crate::MeasureError;
+use crate::signal::{Channels, Measured, PulseKind, SensorCalibration, SignalOptions, measure};
+use crate::tests::common::{Scene, channels};
 
 /// Samples of 1 µs by which the wall's channel is late.
 const LATE: usize = 7;

@@ -1,11 +1,11 @@
 //! Clipped pulses are timed by their flanks, and stated errors hold what these leave open.
 
-use crate::common::{Scene, normal};
-use crate::dry::Dry;
-use hertzchain_measure::signal::{
+use crate::signal::{
     Channels, Estimate, Measured, Method, PulseKind, QualityFlag, Shape, SignalOptions, coverage,
     measure,
 };
+use crate::tests::common::{Scene, normal};
+use crate::tests::dry::Dry;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -1,9 +1,7 @@
 //! A split return of which noise leaves open which fragment is the largest.
 
-use crate::common::Scene;
-use hertzchain_measure::signal::{
-    Channels, Flight, PulseKind, QualityFlag, SignalOptions, measure,
-};
+use crate::signal::{Channels, Flight, PulseKind, QualityFlag, SignalOptions, measure};
+use crate::tests::common::Scene;
 
 /// Time of the later fragment in s, and how long before it the other comes.
 const LATER_S: f64 = 2.280_789e-3;

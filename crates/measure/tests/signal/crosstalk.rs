@@ -1,10 +1,8 @@
 //! Two channels, each of which shows some of the other's.
 
-use crate::common::normal;
-use crate::dry::Dry;
-use hertzchain_measure::signal::{
-    Channels, FindOptions, Measured, QualityFlag, SignalOptions, measure,
-};
+use crate::signal::{Channels, FindOptions, Measured, QualityFlag, SignalOptions, measure};
+use crate::tests::common::normal;
+use crate::tests::dry::Dry;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

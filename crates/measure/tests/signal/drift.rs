@@ -1,9 +1,9 @@
 //! Hum, ramps and steps under a shot, and a wall sensor much more sensitive than the bead's.
 
-use crate::common::Scene;
-use crate::dry::Dry;
-use crate::source::dry_shot;
-use hertzchain_measure::signal::{Channels, QualityFlag, SignalOptions, coverage, measure};
+use crate::signal::{Channels, QualityFlag, SignalOptions, coverage, measure};
+use crate::tests::common::Scene;
+use crate::tests::dry::Dry;
+use crate::tests::source::dry_shot;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;

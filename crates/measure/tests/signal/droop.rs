@@ -1,7 +1,7 @@
 //! What a high-pass does to times of flight, and taking it back.
 
-use crate::common::Scene;
-use hertzchain_measure::signal::{Channels, Shape, SignalOptions, invert_high_pass, measure};
+use crate::signal::{Channels, Shape, SignalOptions, invert_high_pass, measure};
+use crate::tests::common::Scene;
 
 /// Samples after a first-order high-pass, τ y' + y = τ x', from rest, by the trapezoidal rule:
 /// y_n (1 + k) = y_{n−1} (1 − k) + x_n − x_{n−1} with k = interval/(2τ).

@@ -1,10 +1,10 @@
 //! Stated errors of single shots where pulses are faint: noise that sharpens a top or steepens a
 //! flank also moves it, and must not be taken for knowledge.
 
-use crate::source::{Source, bells, dry_shot, methods};
-use hertzchain_measure::signal::{
+use crate::signal::{
     Channels, Estimate, Method, QualityFlag, SignalOptions, coverage, measure, median,
 };
+use crate::tests::source::{Source, bells, dry_shot, methods};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

@@ -1,12 +1,12 @@
 //! Pulses are found whatever the offset, polarity and noise, and doubts are raised where due.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use crate::common::{Scene, channels};
-use hertzchain_measure::MeasureError;
-use hertzchain_measure::signal::{
+use crate::MeasureError;
+use crate::signal::{
     Channels, DigitiserRange, FindOptions, Found, Polarity, PulseKind, QualityFlag, SignalOptions,
     measure, pulses,
 };
+use crate::tests::common::{Scene, channels};
 
 fn find(samples: &[f64]) -> Found {
     pulses(Channels::Summed(samples), &FindOptions::default()).unwrap()

@@ -1,11 +1,11 @@
 //! Nothing panics, whatever the samples.
 
-use crate::common::Scene;
-use hertzchain_measure::signal::{
+use crate::signal::{
     Channels, DigitiserRange, Estimate, FindOptions, LowPass, Method, Polarity, Shape,
     SignalOptions, baseline, chi_square, coverage, groups, invert_high_pass, measure,
     power_law_both_errors, summary,
 };
+use crate::tests::common::Scene;
 use proptest::prelude::*;
 
 fn number() -> impl Strategy<Value = f64> {
@@ -38,7 +38,7 @@ fn measure_all(samples: &[f64], wall: &[f64], interval_s: f64) {
                     polarity: Polarity::Auto,
                     wall_polarity: Polarity::Negative,
                     range: Some(DigitiserRange { low: -1.0, high: 1.0 }),
-                    limits: hertzchain_measure::signal::PulseLimits::default(),
+                    limits: crate::signal::PulseLimits::default(),
                     wall_range: None,
                 };
                 let measuring = SignalOptions {
@@ -47,7 +47,7 @@ fn measure_all(samples: &[f64], wall: &[f64], interval_s: f64) {
                     high_pass_s: beads.map(|_| 1e-3),
                     low_pass: None,
                     bandwidth: None,
-                    calibration: hertzchain_measure::signal::SensorCalibration {
+                    calibration: crate::signal::SensorCalibration {
                         sensitivities_v_n: beads.map(|_| [1e-300, 1e300]),
                         skew_s: 0.0,
                     },

@@ -1,13 +1,13 @@
 //! Picked times: unbiased where they should be, and as uncertain as they say.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use crate::common::{Scene, channels, normal};
-use crate::dry::Dry;
-use hertzchain_measure::MeasureError;
-use hertzchain_measure::signal::{
+use crate::MeasureError;
+use crate::signal::{
     Channels, DigitiserRange, Estimate, Flight, LowPass, Method, PulseKind, QualityFlag, Shape,
     SignalOptions, coverage, measure,
 };
+use crate::tests::common::{Scene, channels, normal};
+use crate::tests::dry::Dry;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

@@ -1,6 +1,6 @@
 //! Power-law fits against closed forms and against numpy's linear algebra.
 
-use hertzchain_measure::signal::{FitError, PowerLaw, power_law, uncertainty};
+use crate::signal::{FitError, PowerLaw, power_law, uncertainty};
 
 const SPEEDS: [f64; 7] = [0.075, 0.1, 0.25, 0.5, 0.75, 1.0, 1.23];
 const TIMES: [f64; 7] = [1086.9, 1020.3, 842.1, 741.7, 690.4, 655.0, 630.8];

@@ -1,7 +1,7 @@
 //! Small pulses before the first one are no noise.
 
-use crate::common::{Scene, channels};
-use hertzchain_measure::signal::{SignalOptions, measure};
+use crate::signal::{SignalOptions, measure};
+use crate::tests::common::{Scene, channels};
 
 /// Stated error of the incident time, with so much of each channel in the other one.
 fn stated(crosstalk: f64) -> f64 {

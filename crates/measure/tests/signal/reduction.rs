@@ -1,6 +1,6 @@
 //! From shots to curves.
 
-use hertzchain_measure::signal::{
+use crate::signal::{
     Estimate, FitError, Point, coverage, groups, power_law, power_law_both_errors,
     ratios_at_common, summary,
 };

@@ -1,7 +1,7 @@
 //! A return is a pulse that stands out of the noise on what falls beneath it.
 
-use crate::common::{Scene, normal};
-use hertzchain_measure::signal::{Channels, PulseKind, QualityFlag, SignalOptions, measure};
+use crate::signal::{Channels, PulseKind, QualityFlag, SignalOptions, measure};
+use crate::tests::common::{Scene, normal};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

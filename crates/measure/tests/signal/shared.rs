@@ -1,12 +1,12 @@
 //! What moves all alike shots alike: what lies under pulses, and what is open of their shapes.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
-use crate::common::{Scene, normal};
-use crate::dry::Dry;
-use hertzchain_measure::signal::{
+use crate::signal::{
     Channels, Estimate, Flight, PulseKind, QualityFlag, SignalOptions, Systematic, mean_systematic,
     measure, without_systematic,
 };
+use crate::tests::common::{Scene, normal};
+use crate::tests::dry::Dry;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

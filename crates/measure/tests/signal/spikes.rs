@@ -1,10 +1,10 @@
 //! Samples that stand out of a smooth signal: found, repaired, and none where there are none.
 
-use crate::common::normal;
-use crate::dry::Dry;
-use hertzchain_measure::signal::{
+use crate::signal::{
     Channels, Measured, QualityFlag, Shape, SignalOptions, measure, without_spikes,
 };
+use crate::tests::common::normal;
+use crate::tests::dry::Dry;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -1,7 +1,7 @@
 //! The zero-phase low-pass against scipy.signal.
 
-use hertzchain_measure::MeasureError;
-use hertzchain_measure::signal::LowPass;
+use crate::MeasureError;
+use crate::signal::LowPass;
 
 fn samples() -> Vec<f64> {
     let sample = |i: f64| (-((i - 33.3) / 6.0).powi(2)).exp() + 0.3 * (0.9 * i).sin() + 0.01 * i;

@@ -9,7 +9,7 @@ use crate::claims::{Curve, Evidence, SHOTS_PER_POINT, SPEED_SCATTER_M_S, TofBran
 use crate::reproduce::{Film, OILS, ReproduceError, Reproduction, SignalShot};
 use hertzchain_chain::wave::Budget;
 use hertzchain_figures::{
-    Chart, Colour, ColourMap, Dash, Figure, HeatMap, Legend, Marker, Series, case_look,
+    Chart, Colour, ColourMap, Dash, Figure, HeatMap, Marker, Series, case_look,
 };
 
 /// All figures of a reproduction with their names.
@@ -101,14 +101,14 @@ fn signal_panel(signal: &SignalShot, legend: bool) -> Chart {
     let highest = signal.channel_n.iter().copied().fold(0.0, f64::max);
     let lowest = signal.channel_n.iter().copied().fold(0.0, f64::min);
     chart = chart.y_range(lowest - FOOTROOM * highest, (1.0 + HEADROOM) * highest);
-    chart.legend(if legend { Legend::Auto } else { Legend::Off })
+    chart.legend(legend)
 }
 
 /// Incident and reflected ToF, with even and with logarithmic axes.
 fn times(evidence: &Evidence) -> Figure {
     let speed = "Striker speed $v_0$ (m/s)";
     let empty = Chart::new(speed, "Time of flight (µs)");
-    let log = curves(evidence, empty.clone().x_log().y_log()).legend(Legend::Off);
+    let log = curves(evidence, empty.clone().x_log().y_log()).legend(false);
     let chart = curves(evidence, empty);
     let chart = chart
         .with(line(DASHED, &[], &[], Colour::BLACK))
@@ -260,7 +260,7 @@ fn shares_of(film: &Film, legend: bool) -> Chart {
     let time = times_us(film);
     let title = format!("{}, $v_0$ = {:.4} m/s", label(&film.case), film.speed_m_s);
     let empty = Chart::new("Time (µs)", "Share of initial energy").title(&title);
-    let mut chart = empty.y_range(0.0, 1.0).legend(if legend { Legend::Auto } else { Legend::Off });
+    let mut chart = empty.y_range(0.0, 1.0).legend(legend);
     let mut below = vec![0.0; time.len()];
     for (name, colour, part) in parts(&film.budgets) {
         let share = film.budgets.iter().zip(&part).map(|(b, part)| part / b.start_j);

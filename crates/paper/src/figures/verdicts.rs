@@ -6,7 +6,7 @@ use crate::rig_claims::{
     FACTORS, Observed, RigClaims, RigEvidence, SpeedSeries, TriedRig, mean, rebound_m_s, spread_s,
     typical,
 };
-use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series, VerdictMatrix};
+use hertzchain_figures::{Chart, Colour, Figure, Marker, Series, VerdictMatrix};
 
 /// Claims against readings: the default, one switch at a time, the closest.
 ///
@@ -196,7 +196,7 @@ fn spreads(evidence: &RigEvidence) -> Figure {
         }
         let first = at == 0;
         chart = chart.h_line(added_ns, if first { "by the striker\u{2019}s ± 3 mm/s" } else { "" });
-        let legend = if first { Legend::Auto } else { Legend::Off };
+        let legend = first;
         figure = figure.panel(chart.legend(legend));
     }
     figure

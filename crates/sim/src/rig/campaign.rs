@@ -5,7 +5,7 @@
 
 use crate::rig::instruments::Converter;
 use crate::rig::{MeasuredShot, Plan, RigError, Series, run_series};
-use crate::{Fingerprint, Inputs, Shard, commit};
+use crate::{Fingerprint, Shard, commit};
 use hertzchain_experiment::{self as experiment, Experiment};
 use hertzchain_measure::records::{
     SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, remove_left_behind, untriggered, write_whole,
@@ -194,8 +194,7 @@ struct CampaignFolder {
 
 /// Of all that recordings follow from, the program's version and commit included.
 fn fingerprint(plan: &Plan) -> Fingerprint {
-    let inputs = Inputs::of("campaign").count("seed", plan.seed);
-    inputs.text("experiment", &plan.experiment.canonical_text()).fingerprint()
+    Fingerprint::of("campaign", &(plan.seed, plan.experiment.canonical_text()))
 }
 
 impl CampaignFolder {

@@ -83,12 +83,12 @@ impl Plan {
     }
 
     /// The case of a series.
-    pub fn case(&self, series: &Series) -> &Case {
+    pub(crate) fn case(&self, series: &Series) -> &Case {
         &self.cases[series.case]
     }
 
     /// Shots of the series of one part.
-    pub fn shots(&self, series: usize) -> u64 {
+    pub(crate) fn shots(&self, series: usize) -> u64 {
         (series * self.experiment.campaign().shots) as u64
     }
 }

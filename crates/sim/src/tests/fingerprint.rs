@@ -14,12 +14,11 @@ fn the_hash_is_sha_256_and_is_read_back() {
 
 #[test]
 fn lists_of_inputs_that_run_together_differ() {
-    let of = |parts: [&str; 2]| {
-        let inputs = Inputs::of("test").text("a", parts[0]).text("b", parts[1]);
-        inputs.fingerprint()
-    };
+    let of = |parts: [&str; 2]| Fingerprint::of("test", &parts);
     assert_ne!(of(["one", "two"]), of(["onet", "wo"]));
     assert_eq!(of(["one", "two"]), of(["one", "two"]));
-    let zeros = [0.0, -0.0].map(|zero| Inputs::of("test").numbers("a", &[zero]).fingerprint());
-    assert_ne!(zeros[0], zeros[1]);
+    assert_ne!(of(["a\", \"b", "c"]), of(["a", "b\", \"c"]));
+    let of = |number: f64| Fingerprint::of("test", &number);
+    assert_ne!(of(0.0), of(-0.0));
+    assert_ne!(of(0.1), of(0.1_f64.next_up()));
 }

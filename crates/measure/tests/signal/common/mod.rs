@@ -1,7 +1,7 @@
 //! Synthetic records: three bells in noise.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
-use hertzchain_measure::signal::{Channels, Shape};
+use crate::signal::{Channels, Shape};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

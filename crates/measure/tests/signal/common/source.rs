@@ -1,8 +1,8 @@
 //! Shots without noise as functions of time, and the methods that time them.
 
-use crate::common::{Scene, normal};
-use crate::dry::Dry;
-use hertzchain_measure::signal::{Method, Shape};
+use super::common::{Scene, normal};
+use super::dry::Dry;
+use crate::signal::{Method, Shape};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 

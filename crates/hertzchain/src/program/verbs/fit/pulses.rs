@@ -11,7 +11,7 @@ use crate::program::format::digits;
 use crate::program::notes::with_notes;
 use crate::program::print::{self, heading};
 use crate::program::words::lines;
-use hertzchain_figures::{Chart, Colour, Figure, Legend, Marker, Series};
+use hertzchain_figures::{Chart, Colour, Figure, Marker, Series};
 use hertzchain_infer::Problem;
 use serde_json::Value;
 
@@ -123,7 +123,7 @@ fn residuals(shown: &Shown<'_>) -> Chart {
     let sigma = shown.record.sigma_v[shown.channel];
     let pairs = measured.iter().zip(model);
     let residuals: Vec<f64> = pairs.map(|(a, b)| (a - b) / sigma).collect();
-    over_time(shown, "Residual (standard errors)").h_line(0.0, "").legend(Legend::Off).with(
+    over_time(shown, "Residual (standard errors)").h_line(0.0, "").legend(false).with(
         Series::points("", &in_us(times), &residuals).colour(Colour::BLUE).marker(Marker::Circle),
     )
 }

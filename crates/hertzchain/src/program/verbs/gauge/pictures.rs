@@ -1,7 +1,7 @@
 //! K and A of the wet contacts against speed, beside those of known oils.
 
 use crate::gauge::GaugeResult;
-use hertzchain_figures::{Chart, Colour, Dash, Figure, Legend, Marker, Series, case_look};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series, case_look};
 use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, is_determined};
 
 /// Speeds at which an oil's curve is drawn.
@@ -36,7 +36,7 @@ fn panel(run_gauge: &GaugeResult, of: usize, label: &str, unit: f64) -> Chart {
     let chart = match of {
         // K changes by some percent, A tenfold; one legend does for both.
         0 => chart,
-        _ => chart.y_log().legend(Legend::Off),
+        _ => chart.y_log().legend(false),
     };
     let shown = if has_both(run_gauge) { run_gauge.oils.len() } else { 0 };
     let oils = run_gauge.oils.iter().take(shown).enumerate();

@@ -1,6 +1,6 @@
 //! Figures of what was measured.
 
-use hertzchain_figures::{Chart, Dash, Figure, Legend, Series, case_look};
+use hertzchain_figures::{Chart, Dash, Figure, Series, case_look};
 use hertzchain_measure::signal::{Estimate, FitError, Flight, PowerLaw, Ratio};
 use hertzchain_measure::{Case, Curves, Example, Shot, SpeedRow};
 
@@ -64,10 +64,7 @@ pub(super) fn times(curves: &Curves) -> Figure {
             .x_log()
             .y_log()
             .title(title)
-            .legend(match curves.cases.len() {
-                1 => Legend::Off,
-                _ => Legend::Auto,
-            })
+            .legend(curves.cases.len() != 1)
     };
     let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
     for (number, case) in curves.cases.iter().enumerate() {

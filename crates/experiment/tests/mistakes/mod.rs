@@ -14,7 +14,7 @@ mod twice;
 mod unsolved;
 mod validity;
 
-use hertzchain_experiment::{Experiment, Finding};
+use crate::{Experiment, Finding};
 
 const DRY: &str = include_str!("../../../../experiments/dry.toml");
 
