@@ -29,7 +29,7 @@ const REACH: f64 = 1.96;
 
 /// Limits of all parameters at bounds; why there are none in place of those, if profiles
 /// met something better.
-pub type Limits = Result<Vec<Limit>, String>;
+pub(crate) type Limits = Result<Vec<Limit>, String>;
 
 /// From the profiles that there are, or from new ones of these parameters.
 pub(super) fn limits(

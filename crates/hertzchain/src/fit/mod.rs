@@ -12,10 +12,10 @@ mod validation;
 pub use self::{
     alternatives::{AlternativeModel, AlternativeModels, Unfitted},
     checkpoint::{CHAIN, finished, leave, saved},
-    limits::{Limit, Limits},
+    limits::Limit,
     more::{Curves, More, Sampled},
     results::{inferred, joined, json, rows_json},
-    tables::{Table, of_any as tables_of_any, tables},
+    tables::{of_any as tables_of_any, tables},
 };
 
 use crate::failure::Failure;
@@ -52,7 +52,7 @@ pub struct Inferred {
     /// Uncertainty beyond the covariance.
     pub more: More,
     /// Of parameters at bounds.
-    pub limits: Limits,
+    pub limits: Result<Vec<Limit>, String>,
 }
 
 /// Everything about a fit of a curve.

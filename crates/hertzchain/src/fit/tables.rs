@@ -9,7 +9,7 @@ use hertzchain_infer::{
 };
 
 /// A file's name and what stands in it.
-pub type Table = (&'static str, String);
+pub(crate) type Table = (&'static str, String);
 
 /// Every table of a fit of a curve.
 pub fn tables(fit_result: &FitResult) -> Vec<Table> {

@@ -13,7 +13,11 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 ///
 /// # Errors
 /// Interval or time constant not positive; samples not finite.
-pub fn invert_high_pass(samples: &mut [f64], interval_s: f64, time_constant_s: f64) -> Result<()> {
+pub(crate) fn invert_high_pass(
+    samples: &mut [f64],
+    interval_s: f64,
+    time_constant_s: f64,
+) -> Result<()> {
     MeasureError::positive("sampling interval in s", interval_s)?;
     MeasureError::positive("time constant of the high-pass in s", time_constant_s)?;
     all_finite(samples)?;
@@ -53,7 +57,7 @@ impl LowPass {
     /// # Errors
     /// Order not 2 or 4; cutoff not between 0 and half the sampling rate; too few or not finite
     /// samples.
-    pub fn apply(&self, samples: &[f64], interval_s: f64) -> Result<Vec<f64>> {
+    pub(crate) fn apply(&self, samples: &[f64], interval_s: f64) -> Result<Vec<f64>> {
         let sections = self.sections(interval_s)?;
         let edge = 3 * (self.order + 1);
         MeasureError::enough(samples.len(), edge + 1)?;

@@ -234,7 +234,7 @@ impl Flight {
 
     /// The same with the relative standard error of the sampling interval added to both times: all
     /// of one recording share it.
-    pub fn with_interval_error(mut self, relative: f64) -> Self {
+    pub(crate) fn with_interval_error(mut self, relative: f64) -> Self {
         self.interval_error = relative;
         self.incident_s.widen(relative);
         if let Some(reflected_s) = &mut self.reflected_s {
@@ -261,7 +261,7 @@ impl Flight {
 
     /// The same where more than this shot determines how much lower a pulse's competing maximum is:
     /// below 0 that one is the pulse.
-    pub fn with_height_difference(&self, kind: PulseKind, lower: Estimate) -> Self {
+    pub(crate) fn with_height_difference(&self, kind: PulseKind, lower: Estimate) -> Self {
         let mut picks = self.picks;
         let (Some(pulse), Some(other)) = (picks.pulse(kind), picks.competing[kind as usize]) else {
             return *self;
@@ -344,7 +344,7 @@ impl Picks {
 /// Systematic error of the mean of times between two pulses, from those of the pulses, a pair a
 /// shot: noise among what lies under them, which has signs, averages out, what stands there in
 /// every shot and what is open of the shapes does not. 0 without shots.
-pub fn mean_systematic(pairs: &[[Systematic; 2]]) -> f64 {
+pub(crate) fn mean_systematic(pairs: &[[Systematic; 2]]) -> f64 {
     let count = pairs.len().max(1) as f64;
     let mean = |of: &dyn Fn(&[Systematic; 2]) -> f64| pairs.iter().map(of).sum::<f64>() / count;
     let superposition = |pulse: usize| mean(&|both| both[pulse].superposition_s);

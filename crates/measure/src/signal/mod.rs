@@ -38,20 +38,20 @@ mod statistics;
 
 pub use self::{
     baseline::{Baseline, baseline},
-    filters::{Bandwidth, LowPass, invert_high_pass},
+    filters::{Bandwidth, LowPass},
     find::{
         Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Normalisation, Polarity,
         Pulse, PulseKind, PulseLimits, QualityFlag, normalisation, pulses,
     },
-    flight::{
-        Flight, Measured, SensorCalibration, SignalOptions, mean_systematic, measure,
-        without_systematic,
-    },
+    flight::{Flight, Measured, SensorCalibration, SignalOptions, measure, without_systematic},
     pick::{CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation},
     power_law::{FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty},
     spikes::without_spikes,
     statistics::{
         ChiSquare, Coverage, Estimate, Point, Ratio, Summary, chi_square, coverage, groups, median,
-        ratios_at_common, summary,
+        summary,
     },
+};
+pub(crate) use self::{
+    filters::invert_high_pass, flight::mean_systematic, statistics::ratios_at_common,
 };

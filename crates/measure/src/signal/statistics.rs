@@ -242,7 +242,12 @@ pub struct Ratio {
 /// (σ_r/r)² = (σ_u/u)² + (σ_l/l)² + exponent² ((σ_v,u/v_u)² + (σ_v,l/v_l)²).
 /// Give 0 if speeds' errors are already in the values'. Each upper point is divided by the nearest
 /// lower one.
-pub fn ratios_at_common(upper: &[Point], lower: &[Point], gap: f64, exponent: f64) -> Vec<Ratio> {
+pub(crate) fn ratios_at_common(
+    upper: &[Point],
+    lower: &[Point],
+    gap: f64,
+    exponent: f64,
+) -> Vec<Ratio> {
     let ratio = |u: &Point| {
         let apart = |l: &Point| (l.speed.value - u.speed.value).abs();
         let near = lower.iter().filter(|l| apart(l) <= gap);

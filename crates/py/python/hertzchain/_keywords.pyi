@@ -133,7 +133,6 @@ class GaugeOptions(TypedDict, total=False):
     dry_free: Quantity | Iterable[Quantity]
     own: Quantity | Iterable[Quantity] | None
     systematic: Mapping[str, Any] | None
-    form: Literal["each", "power"]
     oils: Path | None
     accuracy: Quantity
     threads: Quantity | None

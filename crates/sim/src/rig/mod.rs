@@ -8,7 +8,8 @@
 //! for every shot, so that results depend on neither threads nor order.
 //!
 //! ```no_run
-//! use hertzchain_sim::rig::{Plan, Shard, campaign};
+//! use hertzchain_sim::Shard;
+//! use hertzchain_sim::rig::{Plan, campaign};
 //! use std::path::Path;
 //!
 //! let paper = hertzchain_experiment::preset("paper")?;
@@ -34,7 +35,6 @@ pub use self::{
     recorder::Record,
     shot::{MeasuredShot, Shot, run_series},
 };
-pub use crate::Shard;
 
 #[cfg(test)]
 #[path = "../../tests/rig/main.rs"]

@@ -1,7 +1,8 @@
 //! Campaigns: files that depend on nothing but their inputs.
 
 use super::small::{TEXT, experiment, plan};
-use crate::rig::{Plan, Progress, RigError, Shard, campaign};
+use crate::Shard;
+use crate::rig::{Plan, Progress, RigError, campaign};
 use hertzchain_experiment::Experiment;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,8 @@
 //! Series that can't be computed, and parts that are put together.
 
 use super::small::plan;
-use crate::rig::{RigError, Shard, campaign, merge, plan_of_folder, run_series};
+use crate::Shard;
+use crate::rig::{RigError, campaign, merge, plan_of_folder, run_series};
 use std::fs;
 
 #[test]

@@ -99,7 +99,7 @@ fn write(
 fn write_inferred(
     folder: &mut Folder,
     fit_result: &Inferred,
-    (all, tables): (&serde_json::Value, &[fit::Table]),
+    (all, tables): (&serde_json::Value, &[(&'static str, String)]),
 ) -> Result<(), Failure> {
     folder.write("fit.json", format!("{all:#}\n").as_bytes())?;
     folder.tables(tables)?;

@@ -252,7 +252,7 @@ pub struct Found {
 
 impl Found {
     /// The pulses found, in order.
-    pub fn pulses(&self) -> impl Iterator<Item = &Pulse> {
+    pub(crate) fn pulses(&self) -> impl Iterator<Item = &Pulse> {
         let all = [&self.incident, &self.wall, &self.reflected];
         all.into_iter().flatten()
     }
