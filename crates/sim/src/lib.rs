@@ -45,7 +45,7 @@ pub use self::{
     fingerprint::{Fingerprint, commit},
     long_work::Expected,
     plan::{Plan, PreparedChain, Watch},
-    result::{COLUMNS, Column, Failed, Law, Rows, WarningSummary},
+    result::{COLUMNS, Column, Failed, Rows, WarningSummary},
     shard::{Shard, StoredShard},
     shot::{Flight, OF_PEAKS, Rebound, Shot, shoot, shoot_checked, shoot_estimated},
     speeds::{parse_speed, parse_speeds, parse_time},

@@ -71,7 +71,7 @@ pub struct WarningSummary {
 }
 
 /// A power law, and what accuracies alone leave open of it.
-pub type Law = (Result<PowerLaw, FitError>, Result<Uncertainty, FitError>);
+pub(crate) type Law = (Result<PowerLaw, FitError>, Result<Uncertainty, FitError>);
 
 /// The shots of a sweep, a row each.
 #[derive(Clone, Debug, Default, PartialEq)]

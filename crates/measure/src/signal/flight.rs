@@ -68,8 +68,9 @@ pub struct Measured {
 /// Finds and picks the pulses of one shot.
 ///
 /// # Errors
-/// As [`pulses`](crate::signal::pulses), [`invert_high_pass`] and [`LowPass::apply`]. A shot whose
-/// pulses are found in part is no error: its `flight` is.
+/// As [`pulses`](crate::signal::pulses); a time constant that is not positive, or a low-pass of an
+/// order or corner that filters can't have. A shot whose pulses are found in part is no error: its
+/// `flight` is.
 pub fn measure(
     channels: Channels<'_>,
     interval_s: f64,

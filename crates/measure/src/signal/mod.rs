@@ -5,8 +5,8 @@
 //!
 //! 1. [`measure`] conditions a shot, finds its [`pulses`], picks them and
 //!    returns a [`Flight`] with its uncertainty and [`QualityFlag`]s.
-//! 2. [`groups`], [`summary`], [`ratios_at_common`], [`power_law`],
-//!    [`power_law_both_errors`], [`chi_square`] and [`coverage`] reduce shots to curves.
+//! 2. [`groups`], [`summary`], [`power_law`], [`power_law_both_errors`], [`chi_square`] and
+//!    [`coverage`] reduce shots to curves.
 //!
 //! ```
 //! use hertzchain_measure::signal::{Channels, Shape, SignalOptions, measure};

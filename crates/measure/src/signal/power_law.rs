@@ -45,7 +45,7 @@ impl PowerLaw {
 
     /// Whether the points follow the law within their errors: p ≥ 0.01. `None` if their errors are
     /// unknown.
-    pub(crate) fn is_supported(&self) -> Option<bool> {
+    pub fn is_supported(&self) -> Option<bool> {
         self.chi_square.map(|c| c.probability >= UNLIKELY)
     }
 
