@@ -28,6 +28,38 @@ pub(crate) const KNEE: Clip = |volts, end| match volts > 0.0 {
     false => volts,
 };
 
+/// What lies under the pulses, over the incident pulse's height: amplitude of the mains' hum of 50 Hz,
+/// with a fifth as much of its third harmonic; steepest ramp in 1/s; step. Phases, slopes and
+/// moments are each shot's own.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Drift {
+    pub hum: f64,
+    pub ramp_per_s: f64,
+    pub step: f64,
+}
+
+impl Drift {
+    /// The drift of a record of this length in s, over time in s.
+    fn drawn(self, length_s: f64, rng: &mut ChaCha8Rng) -> impl Fn(f64) -> f64 + use<> {
+        let [first, third, slope, moment] = [(); 4].map(|()| uniform(rng));
+        let step_s = moment * length_s;
+        move |time_s| {
+            let wave = |harmonic: f64, phase: f64| (TAU * (50.0 * harmonic * time_s + phase)).sin();
+            let hum = self.hum * (wave(1.0, first) + 0.2 * wave(3.0, third));
+            let step = if time_s > step_s { self.step } else { 0.0 };
+            hum + (2.0 * slope - 1.0) * self.ramp_per_s * time_s + step
+        }
+    }
+
+    fn is_none(self) -> bool {
+        [self.hum, self.ramp_per_s, self.step] == [0.0; 3]
+    }
+}
+
+fn uniform(rng: &mut ChaCha8Rng) -> f64 {
+    f64::from(rng.next_u32()) / f64::from(u32::MAX)
+}
+
 /// What is done to a shot's signals.
 #[derive(Clone)]
 pub(crate) struct Fault {
@@ -45,6 +77,7 @@ pub(crate) struct Fault {
     pub corrected: bool,
     /// Whether strikers' speeds differ from shot to shot.
     pub speeds_differ: bool,
+    pub drift: Drift,
 }
 
 impl Default for Fault {
@@ -60,6 +93,7 @@ impl Default for Fault {
             low_pass: None,
             corrected: false,
             speeds_differ: false,
+            drift: Drift::default(),
         }
     }
 }
@@ -122,7 +156,7 @@ pub(crate) fn record(
     fault: &Fault,
     rng: &mut ChaCha8Rng,
 ) -> (Vec<Vec<f64>>, f64) {
-    let phase = f64::from(rng.next_u32()) / f64::from(u32::MAX);
+    let phase = uniform(rng);
     let off: f64 = StandardNormal.sample(rng);
     let speed_m_s = match fault.speeds_differ {
         true => row.speed_m_s + SPEED_STD * off,
@@ -144,6 +178,9 @@ fn sampled(
     let noise = 10_f64.powf(-fault.noise_db / 20.0);
     let lead = LEAD_S / FINE_S;
     let count = ((volts.len() as f64 * slower.min(1.0) + lead) / per) as usize - 2;
+    // Records without drift keep their random numbers.
+    let length_s = count as f64 / fault.rate_hz;
+    let drift = (!fault.drift.is_none()).then(|| fault.drift.drawn(length_s, rng));
     let sample = |i: usize| {
         let at = ((i as f64 + phase) * per - lead) / slower;
         let first = at.floor().max(0.0) as usize;
@@ -153,7 +190,8 @@ fn sampled(
             _ => 0.0,
         };
         let error: f64 = StandardNormal.sample(rng);
-        0.3 + clean + noise * error
+        let under = drift.as_ref().map_or(0.0, |drift| drift(i as f64 / fault.rate_hz));
+        0.3 + clean + under + noise * error
     };
     (0..count).map(sample).collect()
 }

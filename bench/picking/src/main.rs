@@ -1,7 +1,7 @@
 //! Coverage of the stated errors of picked pulses, by computed records with known times.
 //!
-//! `cargo run --release -p hertzchain-picking -- 20` puts noise, saturation, crosstalk, precursors
-//! and a low-pass into 20 computed shots of each preset at six speeds, measures them, and prints one
+//! `cargo run --release -p hertzchain-picking -- 20` puts noise, saturation, crosstalk, precursors,
+//! drift and a low-pass into 20 computed shots of each preset at six speeds, measures them, and prints one
 //! line of a table for each kind of records.
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
@@ -9,7 +9,7 @@ mod fault;
 mod row;
 mod tally;
 
-use fault::{Fault, HARD, KNEE, SHORT_KNEE, TANH};
+use fault::{Drift, Fault, HARD, KNEE, SHORT_KNEE, TANH};
 use hertzchain_measure::signal::Bandwidth;
 use row::Row;
 use std::error::Error;
@@ -111,6 +111,27 @@ fn line(name: &str, tally: &Tally) -> String {
     )
 }
 
+/// Hum of the mains, ramps and steps under the pulses.
+fn drifts() -> Vec<(String, Fault)> {
+    let none = Drift::default();
+    let kinds = [
+        ("hum of 0.1 %", Drift { hum: 0.001, ..none }),
+        ("hum of 1 %", Drift { hum: 0.01, ..none }),
+        ("hum of 5 %", Drift { hum: 0.05, ..none }),
+        ("hum of 20 %", Drift { hum: 0.2, ..none }),
+        ("ramps to 50/s", Drift { ramp_per_s: 50.0, ..none }),
+        ("hum of 5 %, ramps to 50/s", Drift { hum: 0.05, ramp_per_s: 50.0, ..none }),
+        ("step of 1 %", Drift { step: 0.01, ..none }),
+        ("hum of 5 %, step of 1 %", Drift { hum: 0.05, step: 0.01, ..none }),
+    ];
+    let at = |(name, drift): (&str, Drift)| {
+        [40.0, 60.0].map(|noise_db| {
+            (format!("{name}, {noise_db} dB"), Fault { noise_db, drift, ..Fault::default() })
+        })
+    };
+    kinds.into_iter().flat_map(at).collect()
+}
+
 /// Kinds of records: a name to choose them by, and each with what is done to it.
 fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
     let at = |noise_db: f64| Fault { noise_db, ..Fault::default() };
@@ -160,6 +181,7 @@ fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
         }
     }
     families.push(("low-pass", filtered));
+    families.push(("drift", drifts()));
     let clips = [("hard", HARD), ("tanh", TANH), ("short knee", SHORT_KNEE), ("knee", KNEE)];
     for (kind, clip) in clips {
         let mut clipped = Vec::new();
