@@ -17,6 +17,8 @@ const ENOUGH: usize = 8192;
 pub(super) const FIRST: f64 = 0.25;
 /// The same where that finds no three pulses: the wall's sensor may be six times as sensitive.
 pub(super) const FIRST_LOW: f64 = 0.08;
+/// The same where that takes hum for a pulse.
+pub(super) const FIRST_HIGH: f64 = 0.4;
 /// Swing over noise below which nothing is a pulse: among 10⁶ blocks of noise the largest is at 5.
 const LEAST_SWING: f64 = 6.0;
 /// Largest noise, as a share of the highest pulse, that is not smoothed.

@@ -12,7 +12,7 @@ pub use self::{
 };
 
 use crate::error::{MeasureError, Result};
-use channel::{ChannelSignal, FIRST, FIRST_LOW, Smoothed};
+use channel::{ChannelSignal, FIRST, FIRST_HIGH, FIRST_LOW, Smoothed};
 use select::PulseSelection;
 
 /// Finds the incident, the wall's and the reflected pulse of one shot.
@@ -78,8 +78,20 @@ fn summed(samples: &[f64], options: &FindOptions) -> Result<Gathered> {
     if is_complete(&usual) {
         return Ok(usual);
     }
-    let lower = summed_above(samples, options, FIRST_LOW);
-    Ok(lower.ok().filter(is_complete).unwrap_or(usual))
+    let (found, _) = &usual;
+    let share = if is_hum(found.incident, found.wall) { FIRST_HIGH } else { FIRST_LOW };
+    let other = summed_above(samples, options, share);
+    Ok(other.ok().filter(is_complete).unwrap_or(usual))
+}
+
+/// Width of what was taken for the incident pulse over that of the wall's from which on it is no pulse
+/// of the same wave. Those of 4,000 shots of chains at random have up to 1.3, hum of the mains 8 and
+/// more.
+const WIDEST: f64 = 3.0;
+
+fn is_hum(incident: Option<Pulse>, wall: Option<Pulse>) -> bool {
+    let pair = incident.zip(wall);
+    pair.is_some_and(|(incident, wall)| incident.width_samples > WIDEST * wall.width_samples)
 }
 
 /// The pulses of a channel whose first one exceeds a share of the largest swing.
@@ -171,7 +183,8 @@ fn gather(selection: &PulseSelection, views: [&Smoothed<'_>; 3]) -> Gathered {
     {
         flags.push(QualityFlag::RecordTooShort);
     }
-    flags.extend(selection.order_doubtful.then_some(QualityFlag::Order));
+    let order_doubtful = selection.order_doubtful || is_hum(pulses[0], pulses[1]);
+    flags.extend(order_doubtful.then_some(QualityFlag::Order));
     let rough = |channel: &ChannelSignal<'_>| channel.normalisation.baseline.quiet_samples == 0;
     let rough = rough(sensor) || rough(wall);
     flags.extend(rough.then_some(QualityFlag::FewQuietSamples));
