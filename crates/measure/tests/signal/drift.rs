@@ -112,3 +112,14 @@ fn hum_is_not_taken_for_the_incident_pulse() {
         assert!(off.abs() < 5.0 * flight.incident_s.sigma, "{number}: {:?}", flight.incident_s);
     }
 }
+
+/// The train of a heavy striker is much wider than the wall's first pulse, and no hum.
+#[test]
+fn a_train_is_not_taken_for_hum() {
+    let mut scene = Scene { noise: 0.001, ..Scene::default() };
+    scene.pulses[0] = (0.9e-3, 0.9, 330e-6);
+    let shot = measure(Channels::Summed(&scene.summed()), INTERVAL_S, &SignalOptions::default());
+    let shot = shot.unwrap();
+    assert!(!shot.found.flags.contains(&QualityFlag::Order), "{:?}", shot.found.flags);
+    assert!((shot.found.incident.unwrap().at as f64 - 900.0).abs() < 30.0);
+}
