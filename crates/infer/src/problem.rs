@@ -277,7 +277,8 @@ impl<'a> Spread<'a> {
     pub fn new(
         problem: &'a dyn Problem,
         fingerprint: Fingerprint,
-        (size, workers): (usize, usize),
+        size: usize,
+        workers: usize,
         compute: &'a Compute<'a>,
     ) -> Self {
         let failure = OnceLock::new();

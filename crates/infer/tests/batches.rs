@@ -34,7 +34,7 @@ fn a_fit_and_a_chain_have_the_same_bits_whoever_computes_them() {
     chain.advance(&problem, 40).unwrap();
     for size in [1, 7, 1000] {
         let compute = |batches: &[Batch]| Ok(backwards(&problem, batches));
-        let spread = Spread::new(&problem, name, (size, 1), &compute);
+        let spread = Spread::new(&problem, name, size, 1, &compute);
         let there = fit(&spread, &Fitting::default()).unwrap();
         assert_eq!(there.point, here.point);
         let mut other = Chain::start(&spread, &there, &covariance, &how).unwrap();
@@ -54,8 +54,7 @@ fn every_worker_has_a_batch_where_there_are_points_for_it() {
             cut.store(given.len(), Ordering::Relaxed);
             Ok(backwards(&problem, given))
         };
-        let spread =
-            Spread::new(&problem, Fingerprint::of_bytes(b"toy"), (size, workers), &compute);
+        let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), size, workers, &compute);
         let found = spread.residuals(&points);
         assert_eq!(cut.into_inner(), batches, "{size} points, {workers} workers");
         let expected = problem.residuals(&points);
@@ -76,14 +75,14 @@ fn batches_that_are_lost_for_good_are_told() {
         0..=5 => Ok(backwards(&problem, batches)),
         _ => Err("no worker is left".to_owned()),
     };
-    let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), (8, 1), &compute);
+    let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), 8, 1, &compute);
     let mut chain = Chain::start(&spread, &here, &covariance, &Sampling::default()).unwrap();
     chain.advance(&spread, 20).unwrap();
     assert_eq!(spread.failure(), Some("no worker is left"));
     // No user is asked in vain again.
     assert_eq!(calls.into_inner(), 7);
     let short = |batches: &[Batch]| Ok(batches.iter().map(|_| Vec::new()).collect());
-    let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), (8, 1), &short);
+    let spread = Spread::new(&problem, Fingerprint::of_bytes(b"toy"), 8, 1, &short);
     assert!(spread.residuals(&[vec![4.0, 0.8]])[0].is_err());
     assert!(spread.failure().unwrap().contains("other numbers"));
 }

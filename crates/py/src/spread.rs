@@ -169,7 +169,7 @@ pub(crate) fn fit_spread<'py>(
             return fit_result(problem, problem, arguments);
         };
         let compute = |batches: &[Batch]| elsewhere.outcomes(batches);
-        let spread = Spread::new(problem, problem.fingerprint(), (size, workers), &compute);
+        let spread = Spread::new(problem, problem.fingerprint(), size, workers, &compute);
         let found = fit_result(problem, &spread, arguments);
         match spread.failure() {
             Some(why) => Err(Failure::User(why.to_owned())),

@@ -8,7 +8,7 @@ use hertzchain_sim::{
     Control, InstructionSet, Plan, Shot, StudyError, count_done, run_plans, stopped,
 };
 use rayon::prelude::*;
-use std::fmt::{Debug, Display};
+use std::fmt::Display;
 
 /// What a model predicts at one speed, in the order of
 /// [`Observable::ALL`](crate::Observable::ALL); `None` where no such pulse is seen.
@@ -95,7 +95,7 @@ impl Model {
 
     /// What names any problem of this model begins with: the experiment as it is understood,
     /// its free numbers, what is known of their parameters, accuracy and instruction set.
-    pub(crate) fn inputs(&self, parameters: &[Parameter]) -> impl Debug {
+    pub(crate) fn inputs(&self, parameters: &[Parameter]) -> String {
         let experiment = self.experiment.canonical_text();
         format!("{:?}", (experiment, &self.numbers, parameters, self.set.name(), self.accuracy))
     }

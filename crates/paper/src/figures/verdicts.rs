@@ -196,8 +196,7 @@ fn spreads(evidence: &RigEvidence) -> Figure {
         }
         let first = at == 0;
         chart = chart.h_line(added_ns, if first { "by the striker\u{2019}s ± 3 mm/s" } else { "" });
-        let legend = first;
-        figure = figure.panel(chart.legend(legend));
+        figure = figure.panel(chart.legend(first));
     }
     figure
 }
