@@ -1,8 +1,10 @@
 //! Hum and drift: a slow baseline fitted around a channel's pulses, and subtracted under them.
 
+use std::ops::Range;
+
 use crate::signal::Pulse;
 use crate::signal::linear::{
-    LinearSolution, LocalPolynomial, NormalEquations, differentiated, powers,
+    LinearSolution, LocalPolynomial, NormalEquations, Row, differentiated, powers,
 };
 
 /// Highest degree of the baseline: over a shot of 3 ms mains hum of 20 % is a cubic to 0.1 %.
@@ -20,12 +22,19 @@ const SIGNIFICANT: f64 = 15.0;
 const LEAST: f64 = 1e-4;
 /// Standard errors by which means of parts may be off the baseline: more is a step, or a tail.
 const MOST_OFF: f64 = 3.0;
+/// Places among which one of a step is looked for at a time, and samples it has to have on either
+/// side of it.
+const PLACES: usize = 16;
+const BESIDE: usize = 8;
+/// Degree of a polynomial that follows what is smooth better than one with a step does.
+const WAVY: usize = 7;
 
 pub(super) struct Detrended {
     pub(super) samples: Vec<f64>,
     first: usize,
     half: f64,
     solution: LinearSolution,
+    degree: usize,
     noise: f64,
 }
 
@@ -34,7 +43,8 @@ impl Detrended {
     /// are those of this channel in order, `time` is that of flight in samples.
     ///
     /// Polynomials are fitted to the quiet stretch and to the second half of what lies between the
-    /// first two pulses, where the first one's tail has gone by.
+    /// first two pulses, where the first one's tail has gone by; with a step at one of these samples
+    /// where they follow no polynomial.
     pub(super) fn new(samples: &[f64], pulses: &[Pulse], time: f64) -> Option<Self> {
         let (one, last) = (pulses.first()?, pulses.last()?);
         let margin = |pulse: &Pulse| (MARGIN * pulse.width_samples) as usize;
@@ -50,27 +60,14 @@ impl Detrended {
         });
         let end = (last.at + margin(last)).min(samples.len() - 1);
         let half = (end - first) as f64;
-        let members: Vec<usize> = (first..quiet_end).chain(gap.clone()).collect();
-        let fit = |degree| fit(samples, &members, (first, half), degree);
-        let fits = (1..=HIGHEST).filter_map(fit);
-        let best = fits.min_by(|a, b| a.criterion.total_cmp(&b.criterion))?;
-        let off = |range: std::ops::Range<usize>| {
-            let error = best.noise / (range.len() as f64 / 4.0).sqrt();
-            let parts = range.clone().collect::<Vec<_>>();
-            let mut means = parts.chunks(range.len().div_ceil(4).max(1)).map(|part| {
-                let miss =
-                    |at: &usize| samples[*at] - best.value((*at as f64 - first as f64) / half);
-                part.iter().map(miss).sum::<f64>() / part.len() as f64
-            });
-            means.any(|mean| mean.abs() > MOST_OFF * error)
-        };
-        if off(first..quiet_end) || off(gap) {
-            return None;
-        }
+        let stretches = [first..quiet_end, gap];
+        let baseline = Baseline { samples, stretches, first, half };
+        let best = baseline.smooth().filter(|fit| baseline.holds(fit));
+        let best = best.or_else(|| baseline.stepped().filter(|fit| baseline.holds(fit)))?;
         let level = best.solution.values[0];
         let mut without = samples.to_vec();
         for (at, sample) in without.iter_mut().enumerate().skip(first) {
-            *sample -= best.value((at.min(end) - first) as f64 / half) - level;
+            *sample -= baseline.value(&best, at.min(end)) - level;
         }
         // What lies before is quiet as well; each part has its own baseline.
         for part in without[..first].rchunks_mut(quiet_end - first) {
@@ -84,49 +81,109 @@ impl Detrended {
                 }
             }
         }
-        let (solution, noise) = (best.solution, best.noise);
-        Some(Self { samples: without, first, half, solution, noise })
+        let BaselineFit { solution, degree, noise, .. } = best;
+        Some(Self { samples: without, first, half, solution, degree, noise })
     }
 
     /// Standard error in samples of a maximum of this height and width, as the slope of the baseline
     /// beneath it is open: slope over curvature, that of a Gaussian.
     pub(super) fn time_error(&self, at: f64, height: f64, width: f64) -> f64 {
-        let row = differentiated(&powers((at - self.first as f64) / self.half));
+        let mut row = differentiated(&powers((at - self.first as f64) / self.half));
+        // A step in it has no slope.
+        row[self.degree + 1..].fill(0.0);
         let slope = self.noise * self.solution.variance(&row).sqrt() / self.half;
         slope * width * width / (8.0 * std::f64::consts::LN_2 * height)
     }
 }
 
-struct PolynomialFit {
+/// Stretches of a channel without pulses, and the unit of the polynomials through them.
+struct Baseline<'a> {
+    samples: &'a [f64],
+    stretches: [Range<usize>; 2],
+    first: usize,
+    half: f64,
+}
+
+/// A polynomial with a step, if it has one, as its last term.
+struct BaselineFit {
     solution: LinearSolution,
     degree: usize,
+    step: Option<usize>,
     noise: f64,
     /// Schwarz's, which weighs squares against parameters.
     criterion: f64,
 }
 
-impl PolynomialFit {
-    fn value(&self, u: f64) -> f64 {
-        let terms = powers(u).into_iter().zip(self.solution.values);
-        terms.take(self.degree + 1).map(|(power, c)| power * c).sum()
+impl Baseline<'_> {
+    fn members(&self) -> impl Iterator<Item = usize> + Clone {
+        self.stretches.iter().cloned().flatten()
     }
-}
 
-fn fit(
-    samples: &[f64],
-    members: &[usize],
-    (first, half): (usize, f64),
-    degree: usize,
-) -> Option<PolynomialFit> {
-    let u = |at: usize| (at as f64 - first as f64) / half;
-    let mut normal = NormalEquations::new(degree + 1);
-    members.iter().for_each(|at| normal.add(&powers(u(*at)), samples[*at]));
-    let mut found = PolynomialFit { solution: normal.solve()?, degree, noise: 0.0, criterion: 0.0 };
-    let squares = members.iter().map(|at| (samples[*at] - found.value(u(*at))).powi(2));
-    let (squares, count) = (squares.sum::<f64>(), members.len() as f64);
-    found.noise = (squares / (count - degree as f64 - 1.0)).sqrt();
-    found.criterion = count * squares.max(f64::MIN_POSITIVE).ln() + degree as f64 * count.ln();
-    Some(found)
+    fn row(&self, at: usize, degree: usize, step: Option<usize>) -> Row {
+        let mut row = powers((at as f64 - self.first as f64) / self.half);
+        if let Some(step) = step {
+            row[degree + 1] = f64::from(u8::from(at >= step));
+        }
+        row
+    }
+
+    fn value(&self, fit: &BaselineFit, at: usize) -> f64 {
+        let terms = fit.degree + 1 + usize::from(fit.step.is_some());
+        let row = self.row(at, fit.degree, fit.step);
+        row.iter().zip(fit.solution.values).take(terms).map(|(term, c)| term * c).sum()
+    }
+
+    fn smooth(&self) -> Option<BaselineFit> {
+        let fits = (1..=HIGHEST).filter_map(|degree| self.fit(degree, None));
+        fits.min_by(|a, b| a.criterion.total_cmp(&b.criterion))
+    }
+
+    /// With a step where that leaves least, found among ever closer places. `None` if it is at an
+    /// end of a stretch, where it may as well be under a pulse, or if it is smooth: a pulse's tail.
+    fn stepped(&self) -> Option<BaselineFit> {
+        let members: Vec<usize> = self.members().collect();
+        let (mut low, mut high) = (BESIDE, members.len().checked_sub(BESIDE)?);
+        let fit = |i: &usize| Some((*i, self.fit(HIGHEST, Some(*members.get(*i)?))?));
+        loop {
+            let apart = high.checked_sub(low)?.div_ceil(PLACES).max(1);
+            let places: Vec<usize> = (low..=high).step_by(apart).collect();
+            let fits = places.iter().filter_map(fit);
+            let (i, best) = fits.min_by(|a, b| a.1.criterion.total_cmp(&b.1.criterion))?;
+            if apart == 1 {
+                let beside = members.get(i.checked_sub(BESIDE)?..i + BESIDE)?;
+                let is_within = beside[2 * BESIDE - 1] - beside[0] == 2 * BESIDE - 1;
+                let smooth = self.fit(WAVY, None)?;
+                return (is_within && best.noise < smooth.noise).then_some(best);
+            }
+            (low, high) = (low.max(i.saturating_sub(apart)), high.min(i + apart));
+        }
+    }
+
+    fn fit(&self, degree: usize, step: Option<usize>) -> Option<BaselineFit> {
+        let terms = degree + 1 + usize::from(step.is_some());
+        let mut normal = NormalEquations::new(terms);
+        let members = self.members();
+        members.clone().for_each(|at| normal.add(&self.row(at, degree, step), self.samples[at]));
+        let solution = normal.solve()?;
+        let mut found = BaselineFit { solution, degree, step, noise: 0.0, criterion: 0.0 };
+        let squares = members.clone().map(|at| (self.samples[at] - self.value(&found, at)).powi(2));
+        let (squares, count) = (squares.sum::<f64>(), members.count() as f64);
+        found.noise = (squares / (count - terms as f64)).sqrt();
+        found.criterion = count * squares.max(f64::MIN_POSITIVE).ln() + terms as f64 * count.ln();
+        Some(found)
+    }
+
+    /// Whether the means of four parts of each stretch follow it.
+    fn holds(&self, fit: &BaselineFit) -> bool {
+        self.stretches.iter().all(|stretch| {
+            let error = fit.noise / (stretch.len() as f64 / 4.0).sqrt();
+            let parts = stretch.clone().collect::<Vec<_>>();
+            parts.chunks(stretch.len().div_ceil(4).max(1)).all(|part| {
+                let off: f64 = part.iter().map(|at| self.samples[*at] - self.value(fit, *at)).sum();
+                (off / part.len() as f64).abs() <= MOST_OFF * error
+            })
+        })
+    }
 }
 
 /// Whether means of parts follow a cubic much more closely than they follow a constant.

@@ -61,6 +61,17 @@ fn hum_and_ramps_leave_stated_errors_those_that_are_made() {
 }
 
 #[test]
+fn a_step_before_the_pulses_is_subtracted_with_the_hum() {
+    let step = |time_s: f64, phase: f64| {
+        hum(0.2)(time_s, phase) + if time_s > (0.1 + 0.1 * phase) * 1e-3 { 0.01 } else { 0.0 }
+    };
+    for pulls in pulls(step) {
+        let scale = coverage(&pulls, 1.96).unwrap().scale;
+        assert!((0.6..1.4).contains(&scale), "{scale}");
+    }
+}
+
+#[test]
 fn a_record_without_drift_keeps_its_baseline() {
     let scene = Scene { noise: 0.01, ..Scene::default() };
     let shot = measure(Channels::Summed(&scene.summed()), INTERVAL_S, &SignalOptions::default());
