@@ -25,7 +25,7 @@ const MOST_OFF: f64 = 3.0;
 /// Places among which one of a step is looked for at a time, and samples it has to have on either
 /// side of it.
 const PLACES: usize = 16;
-const BESIDE: usize = 8;
+const EACH_SIDE: usize = 8;
 /// Degree of a polynomial that follows what is smooth better than one with a step does.
 const WAVY: usize = 7;
 
@@ -142,7 +142,7 @@ impl Baseline<'_> {
     /// end of a stretch, where it may as well be under a pulse, or if it is smooth: a pulse's tail.
     fn stepped(&self) -> Option<BaselineFit> {
         let members: Vec<usize> = self.members().collect();
-        let (mut low, mut high) = (BESIDE, members.len().checked_sub(BESIDE)?);
+        let (mut low, mut high) = (EACH_SIDE, members.len().checked_sub(EACH_SIDE)?);
         let fit = |i: &usize| Some((*i, self.fit(HIGHEST, Some(*members.get(*i)?))?));
         loop {
             let apart = high.checked_sub(low)?.div_ceil(PLACES).max(1);
@@ -150,8 +150,8 @@ impl Baseline<'_> {
             let fits = places.iter().filter_map(fit);
             let (i, best) = fits.min_by(|a, b| a.1.criterion.total_cmp(&b.1.criterion))?;
             if apart == 1 {
-                let beside = members.get(i.checked_sub(BESIDE)?..i + BESIDE)?;
-                let is_within = beside[2 * BESIDE - 1] - beside[0] == 2 * BESIDE - 1;
+                let around = members.get(i.checked_sub(EACH_SIDE)?..i + EACH_SIDE)?;
+                let is_within = around[2 * EACH_SIDE - 1] - around[0] == 2 * EACH_SIDE - 1;
                 let smooth = self.fit(WAVY, None)?;
                 return (is_within && best.noise < smooth.noise).then_some(best);
             }
