@@ -22,8 +22,7 @@ const SIGNIFICANT: f64 = 15.0;
 const LEAST: f64 = 1e-4;
 /// Standard errors by which means of parts may be off the baseline: more is a step, or a tail.
 const MOST_OFF: f64 = 3.0;
-/// Places among which one of a step is looked for at a time, and samples it has to have on either
-/// side of it.
+/// Places at which a step is tried at a time, and samples on either side of it.
 const PLACES: usize = 16;
 const EACH_SIDE: usize = 8;
 /// Degree of a polynomial that follows what is smooth better than one with a step does.
@@ -33,9 +32,7 @@ pub(super) struct Detrended {
     pub(super) samples: Vec<f64>,
     first: usize,
     half: f64,
-    solution: LinearSolution,
-    degree: usize,
-    noise: f64,
+    fit: BackgroundFit,
 }
 
 impl Detrended {
@@ -61,13 +58,13 @@ impl Detrended {
         let end = (last.at + margin(last)).min(samples.len() - 1);
         let half = (end - first) as f64;
         let stretches = [first..quiet_end, gap];
-        let baseline = Baseline { samples, stretches, first, half };
-        let best = baseline.smooth().filter(|fit| baseline.holds(fit));
-        let best = best.or_else(|| baseline.stepped().filter(|fit| baseline.holds(fit)))?;
+        let background = Background { samples, stretches, first, half };
+        let best = background.smooth().filter(|fit| background.holds(fit));
+        let best = best.or_else(|| background.stepped().filter(|fit| background.holds(fit)))?;
         let level = best.solution.values[0];
         let mut without = samples.to_vec();
         for (at, sample) in without.iter_mut().enumerate().skip(first) {
-            *sample -= baseline.value(&best, at.min(end)) - level;
+            *sample -= background.value(&best, at.min(end)) - level;
         }
         // What lies before is quiet as well; each part has its own baseline.
         for part in without[..first].rchunks_mut(quiet_end - first) {
@@ -81,8 +78,7 @@ impl Detrended {
                 }
             }
         }
-        let BaselineFit { solution, degree, noise, .. } = best;
-        Some(Self { samples: without, first, half, solution, degree, noise })
+        Some(Self { samples: without, first, half, fit: best })
     }
 
     /// Standard error in samples of a maximum of this height and width, as the slope of the baseline
@@ -90,14 +86,14 @@ impl Detrended {
     pub(super) fn time_error(&self, at: f64, height: f64, width: f64) -> f64 {
         let mut row = differentiated(&powers((at - self.first as f64) / self.half));
         // A step in it has no slope.
-        row[self.degree + 1..].fill(0.0);
-        let slope = self.noise * self.solution.variance(&row).sqrt() / self.half;
+        row[self.fit.degree + 1..].fill(0.0);
+        let slope = self.fit.noise * self.fit.solution.variance(&row).sqrt() / self.half;
         slope * width * width / (8.0 * std::f64::consts::LN_2 * height)
     }
 }
 
 /// Stretches of a channel without pulses, and the unit of the polynomials through them.
-struct Baseline<'a> {
+struct Background<'a> {
     samples: &'a [f64],
     stretches: [Range<usize>; 2],
     first: usize,
@@ -105,7 +101,7 @@ struct Baseline<'a> {
 }
 
 /// A polynomial with a step, if it has one, as its last term.
-struct BaselineFit {
+struct BackgroundFit {
     solution: LinearSolution,
     degree: usize,
     step: Option<usize>,
@@ -114,7 +110,7 @@ struct BaselineFit {
     criterion: f64,
 }
 
-impl Baseline<'_> {
+impl Background<'_> {
     fn members(&self) -> impl Iterator<Item = usize> + Clone {
         self.stretches.iter().cloned().flatten()
     }
@@ -127,20 +123,20 @@ impl Baseline<'_> {
         row
     }
 
-    fn value(&self, fit: &BaselineFit, at: usize) -> f64 {
+    fn value(&self, fit: &BackgroundFit, at: usize) -> f64 {
         let terms = fit.degree + 1 + usize::from(fit.step.is_some());
         let row = self.row(at, fit.degree, fit.step);
         row.iter().zip(fit.solution.values).take(terms).map(|(term, c)| term * c).sum()
     }
 
-    fn smooth(&self) -> Option<BaselineFit> {
+    fn smooth(&self) -> Option<BackgroundFit> {
         let fits = (1..=HIGHEST).filter_map(|degree| self.fit(degree, None));
         fits.min_by(|a, b| a.criterion.total_cmp(&b.criterion))
     }
 
     /// With a step where that leaves least, found among ever closer places. `None` if it is at an
     /// end of a stretch, where it may as well be under a pulse, or if it is smooth: a pulse's tail.
-    fn stepped(&self) -> Option<BaselineFit> {
+    fn stepped(&self) -> Option<BackgroundFit> {
         let members: Vec<usize> = self.members().collect();
         let (mut low, mut high) = (EACH_SIDE, members.len().checked_sub(EACH_SIDE)?);
         let fit = |i: &usize| Some((*i, self.fit(HIGHEST, Some(*members.get(*i)?))?));
@@ -159,13 +155,13 @@ impl Baseline<'_> {
         }
     }
 
-    fn fit(&self, degree: usize, step: Option<usize>) -> Option<BaselineFit> {
+    fn fit(&self, degree: usize, step: Option<usize>) -> Option<BackgroundFit> {
         let terms = degree + 1 + usize::from(step.is_some());
         let mut normal = NormalEquations::new(terms);
         let members = self.members();
         members.clone().for_each(|at| normal.add(&self.row(at, degree, step), self.samples[at]));
         let solution = normal.solve()?;
-        let mut found = BaselineFit { solution, degree, step, noise: 0.0, criterion: 0.0 };
+        let mut found = BackgroundFit { solution, degree, step, noise: 0.0, criterion: 0.0 };
         let squares = members.clone().map(|at| (self.samples[at] - self.value(&found, at)).powi(2));
         let (squares, count) = (squares.sum::<f64>(), members.count() as f64);
         found.noise = (squares / (count - terms as f64)).sqrt();
@@ -174,7 +170,7 @@ impl Baseline<'_> {
     }
 
     /// Whether the means of four parts of each stretch follow it.
-    fn holds(&self, fit: &BaselineFit) -> bool {
+    fn holds(&self, fit: &BackgroundFit) -> bool {
         self.stretches.iter().all(|stretch| {
             let error = fit.noise / (stretch.len() as f64 / 4.0).sqrt();
             let parts = stretch.clone().collect::<Vec<_>>();
