@@ -13,6 +13,7 @@ mod ensemble_reference;
 mod ensemble_sensors;
 mod ensemble_sets;
 mod ensemble_work;
+mod film;
 mod laws;
 mod paper;
 mod random_chains;

@@ -2,7 +2,7 @@
 
 use crate::common;
 use crate::common::STEEL;
-use hertzchain_chain::laws::{LAWS, Law, Source};
+use hertzchain_chain::laws::{LAWS, Law, Nature, Source};
 use hertzchain_chain::wave::{Limits, Method, run};
 use hertzchain_chain::*;
 use proptest::prelude::*;
@@ -74,6 +74,11 @@ fn chain() -> impl Strategy<Value = Chain> {
         |(beads, ends, contacts)| {
             let (striker, speed_m_s, far, push, incline_rad) = ends;
             let (mut laws, clipped, gap_m) = contacts;
+            let mut with_state = 0;
+            laws.retain(|law| {
+                with_state += usize::from(law.info().nature == Nature::WithState);
+                law.info().nature != Nature::WithState || with_state == 1
+            });
             laws.push(common::hertz());
             let last = beads.len();
             // A chain that nothing holds can be neither pushed nor inclined.

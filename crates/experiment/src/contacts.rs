@@ -61,7 +61,8 @@ impl LawSpec {
     }
 
     pub(crate) fn is_dissipative(&self) -> bool {
-        self.row.info.nature == Nature::Dissipative
+        // A state pushes back only beside an elastic law.
+        matches!(self.row.info.nature, Nature::Dissipative | Nature::WithState)
     }
 
     /// The value that the file gives to a parameter.

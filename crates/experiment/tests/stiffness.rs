@@ -7,10 +7,11 @@ use hertzchain_chain::{Chain, System};
 use std::f64::consts::PI;
 
 /// Laws that share K, with what else they need.
-const SHARING: [&str; 3] = [
+const SHARING: [&str; 4] = [
     "law = \"damping_viscoelastic\", relaxation_time",
     "law = \"damping_brilliantov_1996\", relaxation_time",
     "law = \"damping_tsuji\", damping_ratio",
+    "law = \"film_entrained\", viscosity",
 ];
 
 const STEEL: &str = "[materials.steel]\nyoung_modulus = \"213 GPa\"\npoisson_ratio = 0.3\n";
@@ -59,7 +60,11 @@ fn stiffness_without_units(elastic: &str, law: &str, given: &str) -> f64 {
 
 /// The same in N/m^{3/2} between balls of steel.
 fn stiffness_of_steel(elastic: &str, law: &str, given: &str) -> f64 {
-    let value = if law.contains("ratio") { "0.3" } else { "\"1 us\"" };
+    let value = match law {
+        law if law.contains("ratio") => "0.3",
+        law if law.contains("viscosity") => "\"1 Pa s\"",
+        _ => "\"1 us\"",
+    };
     let of = |given: &str| chain(steel(&format!("{elastic}, {{ {law} = {value}{given} }}")));
     stiffness(&of(given), &of(", stiffness = \"1 N/m^(3/2)\""))
 }
@@ -77,10 +82,11 @@ fn every_law_that_shares_k_is_tested_here() {
     });
     let names: Vec<&str> = sharing.map(|row| row.info.name).collect();
     assert_eq!(names.len(), SHARING.len(), "{names:?}");
-    // A dissipative law whose equation names K has the contact's.
-    let of_k = LAWS
-        .iter()
-        .filter(|row| row.info.nature == Nature::Dissipative && row.info.equation.contains('K'));
+    // A law beside an elastic one whose equation names K has the contact's.
+    let of_k = LAWS.iter().filter(|row| {
+        let beside = matches!(row.info.nature, Nature::Dissipative | Nature::WithState);
+        beside && row.info.equation.contains('K')
+    });
     let of_k: Vec<&str> = of_k.map(|row| row.info.name).collect();
     assert_eq!(of_k, names);
 }

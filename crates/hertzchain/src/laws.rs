@@ -32,6 +32,7 @@ pub fn nature(info: &LawInfo) -> &'static str {
         Nature::Elastic => "elastic",
         Nature::Dissipative => "dissipative",
         Nature::ElasticPlastic => "elastic-plastic",
+        Nature::WithState => "with state",
     }
 }
 

@@ -13,6 +13,7 @@ use crate::prepared::{closed_gaps, is_ambiguous};
 use crate::shot::{Conditioning, Shot, ambiguous, shoot, shoot_checked};
 use crate::stop::stopped;
 use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
+use hertzchain_chain::laws::{Law, Nature};
 use hertzchain_chain::observe::{Maximum, Passage, Passages, Shape, Signal};
 use hertzchain_chain::{InstructionSet, Sensor, Start, System};
 use hertzchain_experiment::{Method, Pick};
@@ -182,7 +183,13 @@ pub(crate) fn suits(plan: &Plan) -> bool {
         && plan.chain.suspension_m.is_none()
         && !matches!(plan.chain.start, Start::Driven { .. })
         && has_wall(&plan.chain.far)
+        && plan.chain.sections.iter().flat_map(|section| &section.laws).all(has_no_state)
         && accuracy::equal_steps(plan).is_some()
+}
+
+/// Whether a law is a function of overlap, rate and the largest overlap.
+fn has_no_state(law: &Arc<dyn Law>) -> bool {
+    law.info().nature != Nature::WithState
 }
 
 /// Steps with which a shot is compared, over its own, and the weight of the change that they

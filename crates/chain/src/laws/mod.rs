@@ -16,6 +16,7 @@ mod damping_viscoelastic;
 mod elastic_hertz;
 mod elastic_plastic_thornton;
 mod elastic_power;
+mod film_entrained;
 mod term;
 
 pub use self::{
@@ -30,9 +31,10 @@ pub use self::{
     elastic_hertz::ElasticHertz,
     elastic_plastic_thornton::ElasticPlasticThornton,
     elastic_power::ElasticPower,
+    film_entrained::FilmEntrained,
     term::{
-        Closed, Columns, Contacts, Law, LawError, LawInfo, Nature, Parameter, Row, Source, Term,
-        law, row,
+        Closed, Columns, ContactState, Contacts, Law, LawError, LawInfo, Nature, Parameter, Row,
+        Source, Term, law, row,
     },
 };
 
@@ -49,6 +51,7 @@ pub static LAWS: &[Row] = &[
     row::<DampingTsuji, 1>(),
     row::<DampingLinear, 1>(),
     row::<DampingPower, 3>(),
+    row::<FilmEntrained, 4>(),
 ];
 
 /// The row of a law by its name.

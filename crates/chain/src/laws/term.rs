@@ -36,6 +36,8 @@ pub enum Nature {
     Dissipative,
     /// Part is stored, part is lost, and the contact remembers how deep it was.
     ElasticPlastic,
+    /// Part is stored, part is lost, by a [`ContactState`] of each contact.
+    WithState,
 }
 
 /// Where a parameter's value comes from when the user gives none.
@@ -126,6 +128,40 @@ pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
     /// Energy in J that the contact would give back.
     fn energy(_k: &[f64; C], _overlap: f64, _largest: f64) -> f64 {
         0.0
+    }
+
+    /// What one contact remembers, if the law is [`Nature::WithState`].
+    fn state(_k: &[f64; C]) -> Option<Box<dyn ContactState>> {
+        None
+    }
+}
+
+/// State of one contact: numbers that are integrated beside the motion, from 0, and what changes
+/// with every accepted step. Its force is added to [`Law::force`].
+pub trait ContactState: Debug + Send + Sync {
+    /// Begins anew at an overlap in m, at rest.
+    fn begin(&mut self, overlap_m: f64);
+
+    /// Force in N, and rates of change of the numbers in m/s.
+    fn force_and_rates(&self, numbers_m: [f64; 3], contact: Closed) -> (f64, [f64; 3]);
+
+    /// Energy in J that the contact would give back at the start of a step.
+    fn energy_j(&self, numbers_m: [f64; 3], overlap_m: f64) -> f64;
+
+    /// Falls below 0 where the contact begins to behave otherwise than at the start of
+    /// the step, which must end there; dimensionless, of the order of 1.
+    fn until_change(&self, number_m: f64, contact: Closed) -> f64;
+
+    /// Makes the end of a step the start of the next; returns the numbers there.
+    fn accept(&mut self, numbers_m: [f64; 3], contact: Closed) -> [f64; 3];
+
+    /// A copy.
+    fn boxed(&self) -> Box<dyn ContactState>;
+}
+
+impl Clone for Box<dyn ContactState> {
+    fn clone(&self) -> Self {
+        self.boxed()
     }
 }
 
@@ -229,6 +265,11 @@ pub trait Law: Debug + Send + Sync {
 
     /// Energy in J that one contact would give back.
     fn energy(&self, k: &Columns, at: usize, overlap: f64, largest: f64) -> f64;
+
+    /// What one contact remembers, if the law is [`Nature::WithState`].
+    fn state(&self, _k: &Columns, _at: usize) -> Option<Box<dyn ContactState>> {
+        None
+    }
 }
 
 /// The loop over contacts, compiled anew for every instruction set.
@@ -296,6 +337,10 @@ impl<T: Term<C>, const C: usize> Law for Of<T, C> {
 
     fn energy(&self, k: &Columns, at: usize, overlap: f64, largest: f64) -> f64 {
         T::energy(&k.at(at), overlap, largest)
+    }
+
+    fn state(&self, k: &Columns, at: usize) -> Option<Box<dyn ContactState>> {
+        T::state(&k.at(at))
     }
 }
 

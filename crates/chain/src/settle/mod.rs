@@ -152,6 +152,11 @@ fn check(system: &System, state: &State, slow: &SlowPhase) -> Result<(), SolveEr
             ));
         }
     }
+    if system.has_states {
+        let why = "a law whose contacts have a state, as film_entrained, has none between shots: \
+             leave it out of a chain that is to come to rest";
+        return refused(why.to_owned());
+    }
     if system.is_in_state() {
         let why = "a chain made from a state is for one shot: friction is frozen in its balance. \
              Settle the chain itself, from the state after the shot";

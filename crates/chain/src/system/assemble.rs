@@ -44,6 +44,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
             _ => None,
         },
         has_memory: false,
+        has_states: false,
         displacement_m: vec![0.0; chain.beads.len() + 2],
         velocity_m_s: vec![0.0; chain.beads.len() + 2],
         origin_m: vec![0.0; chain.beads.len() + 2].into(),
@@ -56,11 +57,11 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
         },
         kinds: Arc::default(),
     };
-    system.has_memory = system
-        .sections
-        .iter()
-        .flat_map(SectionColumns::terms)
-        .any(|term| term.law.info().nature == Nature::ElasticPlastic);
+    let has = |nature| {
+        let mut terms = system.sections.iter().flat_map(SectionColumns::terms);
+        terms.any(|term| term.law.info().nature == nature)
+    };
+    (system.has_memory, system.has_states) = (has(Nature::ElasticPlastic), has(Nature::WithState));
     system.inverse_mass = system.mass_kg.iter().map(|mass| mass.recip()).collect();
     settle(chain, &pairs, &mut system)?;
     set_in_motion(chain, &mut system);
@@ -107,6 +108,12 @@ fn section_columns(
         let term =
             TermColumns { columns: columns(law, pairs, contacts.clone())?, law: law.clone() };
         if law.info().gated { gated.push(term) } else { ungated.push(term) }
+    }
+    let states = section.laws.iter().filter(|law| law.info().nature == Nature::WithState);
+    if states.count() > 1 {
+        let (first, last) = (section.contacts.start(), section.contacts.end());
+        let what = format!("contacts {first} to {last} have more than one law with a state");
+        return Err(ChainError::Layout(what));
     }
     Ok(SectionColumns { contacts, gated, ungated })
 }

@@ -91,6 +91,8 @@ pub struct System {
     pub(crate) has_striker: bool,
     pub(crate) stop_mass_kg: Option<f64>,
     pub(crate) has_memory: bool,
+    /// Whether a law has a state of its own in each contact.
+    pub(crate) has_states: bool,
     pub(crate) displacement_m: Vec<f64>,
     pub(crate) velocity_m_s: Vec<f64>,
     /// Where displacements begin, seen from the chain's own static equilibrium.

@@ -9,7 +9,7 @@ impl Piece<'_> {
     /// push, threads, a driven end) or where laws remember.
     pub fn energy_beyond_striker_j(&self, theta: f64) -> Option<f64> {
         let system = self.system;
-        if !system.flies_free() || system.has_memory {
+        if !system.flies_free() || system.has_memory || system.has_states {
             return None;
         }
         let kinetic = |body: usize| {

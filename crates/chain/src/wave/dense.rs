@@ -8,7 +8,7 @@ use super::step::MOST_STAGES;
 use super::table::{DEGREE, Table};
 use super::zones::LongStep;
 use crate::chain::Tension;
-use crate::laws::Closed;
+use crate::laws::{Closed, ContactState};
 use crate::sensor::Sensor;
 use crate::system::{FLUSH, System};
 use std::cell::Cell;
@@ -209,24 +209,50 @@ impl Piece<'_> {
 
     /// Dynamic force of a contact in N: its force less the static one.
     pub(crate) fn force(&self, contact: usize, theta: f64) -> f64 {
-        let (overlap, rate) = self.overlap(contact, theta);
-        self.force_at(contact, overlap, rate) - self.system.static_force_n[contact]
+        self.force_at(contact, theta, self.overlap(contact, theta))
+            - self.system.static_force_n[contact]
     }
 
     /// Force before any cut of a contact taken as closed, in N.
-    pub(super) fn closed_force(&self, contact: usize, overlap: f64, rate: f64) -> f64 {
-        self.system.unclipped_force(contact, self.closed(contact, overlap, rate))
+    pub(super) fn closed_force(&self, contact: usize, theta: f64) -> f64 {
+        self.uncut_force(contact, theta, self.closed(contact, self.overlap(contact, theta)))
     }
 
-    fn closed(&self, contact: usize, overlap: f64, rate: f64) -> Closed {
+    fn uncut_force(&self, contact: usize, theta: f64, closed: Closed) -> f64 {
+        let of_laws = self.system.unclipped_force(contact, closed);
+        if self.state.states.is_empty() {
+            return of_laws;
+        }
+        let force = |state: &dyn ContactState, own| state.force_and_rates(own, closed).0;
+        of_laws + self.of_state(contact, theta, force).unwrap_or(0.0)
+    }
+
+    /// What `of` says of a contact's state and its numbers.
+    fn of_state(
+        &self,
+        contact: usize,
+        theta: f64,
+        of: impl Fn(&dyn ContactState, [f64; 3]) -> f64,
+    ) -> Option<f64> {
+        let weights = self.table.dense_velocity.iter().map(|row| polynomial(row, theta));
+        self.state.states.seen(contact, (self.step_s, weights), of)
+    }
+
+    /// Below 0 where the state of a closed contact has changed its behaviour since the step's start.
+    pub(super) fn until_change(&self, contact: usize, theta: f64) -> Option<f64> {
+        let closed = self.closed(contact, self.overlap(contact, theta));
+        self.of_state(contact, theta, |state, own| state.until_change(own[0], closed))
+    }
+
+    fn closed(&self, contact: usize, (overlap, rate): (f64, f64)) -> Closed {
         let overlap = if overlap > FLUSH { overlap } else { 0.0 };
         let largest = self.state.largest[contact].max(overlap);
         Closed { overlap, root: overlap.sqrt(), rate, largest }
     }
 
     /// Total force in N at an overlap and a rate under this step's mode.
-    fn force_at(&self, contact: usize, overlap: f64, rate: f64) -> f64 {
-        let closed = self.closed(contact, overlap, rate);
+    fn force_at(&self, contact: usize, theta: f64, (overlap, rate): (f64, f64)) -> f64 {
+        let closed = self.closed(contact, (overlap, rate));
         let frozen = self.frozen && !self.is_slow(contact);
         let mode = match frozen {
             true => self.state.mode[contact],
@@ -234,7 +260,7 @@ impl Piece<'_> {
             false => ContactMode::Open,
         };
         let force = match mode {
-            ContactMode::Closed => self.system.unclipped_force(contact, closed),
+            ContactMode::Closed => self.uncut_force(contact, theta, closed),
             ContactMode::Open => self.system.ungated_force(contact, closed),
             ContactMode::Cut => 0.0,
         };
@@ -264,7 +290,8 @@ impl Piece<'_> {
     /// Whether a contact's force is the sum of its laws on either side of an overlap.
     fn is_smooth(&self, contact: usize, overlap: f64) -> bool {
         let closed = self.state.mode[contact] == ContactMode::Closed && overlap > FLUSH;
-        closed && self.frozen && !self.is_slow(contact) && !self.system.has_memory
+        let remembers = self.system.has_memory || self.system.has_states;
+        closed && self.frozen && !self.is_slow(contact) && !remembers
     }
 
     /// Rate of change of a contact's force in N/s, by a central difference
@@ -275,10 +302,14 @@ impl Piece<'_> {
         if self.step_s < SHORT * self.system.scales().time_s && self.is_smooth(contact, overlap) {
             return self.system.force_rate(contact, (overlap, rate), change);
         }
-        let step = 1e-4 * self.step_s;
-        let after = self.force_at(contact, overlap + rate * step, rate + change * step);
-        let before = self.force_at(contact, overlap - rate * step, rate - change * step);
-        (after - before) / (2.0 * step)
+        // Steps of states are short: rounding would decide.
+        let part = if self.state.states.is_empty() { 1e-4 } else { 1e-2 };
+        let step = part * self.step_s;
+        let after = (overlap + rate * step, rate + change * step);
+        let before = (overlap - rate * step, rate - change * step);
+        let rise = self.force_at(contact, theta + part, after)
+            - self.force_at(contact, theta - part, before);
+        rise / (2.0 * step)
     }
 
     /// A sensor's signal.

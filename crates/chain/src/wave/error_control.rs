@@ -72,6 +72,11 @@ impl Wave<'_> {
         let bodies = self.owned();
         let (set, scales) = (self.pass.set, (speed, length));
         let (error, body) = error_norm(set, bodies, h, weights, &self.a, scales);
+        let (moved, contact) = self.state.states.error_m(h, &weights[0]);
+        let (error, body) = match moved / length > error || moved.is_nan() {
+            true => (moved / length, contact),
+            false => (error, body),
+        };
         let work = self.meter.as_ref().map_or(0.0, |meter| meter.error(h, &weights[0]));
         (if work > error { work } else { error }, body)
     }

@@ -37,6 +37,8 @@ pub(crate) struct Pass {
     pub passing: Vec<f64>,
     pub touching: Vec<f64>,
     pub scratch: Vec<f64>,
+    /// Forces of contacts' states; empty where no law has any.
+    pub of_states: Vec<f64>,
     pub set: InstructionSet,
 }
 
@@ -55,6 +57,7 @@ impl Pass {
             passing: contacts(),
             touching: contacts(),
             scratch: contacts(),
+            of_states: if system.has_states { contacts() } else { Vec::new() },
             set: InstructionSet::default(),
         }
     }
@@ -170,6 +173,9 @@ impl Pass {
     fn add_terms(&mut self, system: &System, contacts: Range<usize>) {
         self.closed_force[contacts.clone()].fill(0.0);
         self.across[contacts.clone()].fill(0.0);
+        if system.has_states {
+            self.closed_force[contacts.clone()].copy_from_slice(&self.of_states[contacts.clone()]);
+        }
         for section in system.sections.iter() {
             let part =
                 section.contacts.start.max(contacts.start)..section.contacts.end.min(contacts.end);

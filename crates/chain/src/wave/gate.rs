@@ -17,6 +17,8 @@ enum Change {
     Force(ContactMode),
     /// From loading to unloading, where a law remembers the largest overlap.
     Turn,
+    /// Of a state's behaviour.
+    State,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +41,7 @@ pub(super) struct GateWatch {
     /// Overlap in m that counts as 0 when a step was made to end there.
     landing: f64,
     speed: f64,
-    /// Modes change with overlaps alone: no cut, no memory.
+    /// Modes change with overlaps alone: no cut, no memory, no states.
     overlap_alone: bool,
     /// Time of the last change of each contact's mode and how many fell on it.
     last: Vec<(f64, u8)>,
@@ -53,6 +55,9 @@ const AT_END: f64 = 1e-12;
 /// Shortest step in contact times that is made for the sake of a change.
 const LEAST_STEP: f64 = 1e-12;
 
+/// A state's behaviour has changed where its measure is this far below 0.
+const LEAST_CHANGE: f64 = 1e-6;
+
 /// Overlaps are differences of positions that are this uncertain.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -65,7 +70,9 @@ impl GateWatch {
             slight_speed: 0.0,
             landing: 0.0,
             speed: scales.speed_m_s,
-            overlap_alone: system.tension == Tension::Allowed && !system.has_memory,
+            overlap_alone: system.tension == Tension::Allowed
+                && !system.has_memory
+                && !system.has_states,
             last: vec![(-1.0, 0); system.contacts()],
         }
     }
@@ -99,9 +106,12 @@ impl GateWatch {
     /// Whether a change left unlocated could alter a velocity by more than
     /// the step's own error.
     fn matters(&self, system: &System, pass: &Pass, c: usize, step_s: f64, change: Change) -> bool {
+        if system.has_states {
+            return true;
+        }
         let depth = match change {
             Change::Overlap(_) => pass.gap[c].abs(),
-            Change::Force(_) | Change::Turn => pass.gap[c].max(0.0),
+            Change::Force(_) | Change::Turn | Change::State => pass.gap[c].max(0.0),
         };
         let closed =
             Closed { largest: pass.largest[c].max(depth), ..Closed::new(depth, pass.rate[c]) };
@@ -130,16 +140,26 @@ impl GateWatch {
     /// The change of one contact in a step, unless it may stay where it is.
     fn event(&self, piece: &Piece<'_>, pass: &Pass, contact: usize) -> Option<Event> {
         let (system, state) = (piece.system, piece.state);
-        let change = self.change(system, state, pass, contact)?;
+        let change = self.change(system, state, pass, contact);
+        let change = change.or_else(|| self.change_of_state(piece, pass, contact))?;
         let matters = self.matters(system, pass, contact, piece.step_s, change);
         if !matters || self.has_landed(system, state, pass, contact, change) {
             return None;
         }
         let theta = locate(piece, contact, change);
         let at_start = theta < AT_START.max(LEAST_STEP * self.time_s / piece.step_s);
-        let spent = change == Change::Turn || self.changed_at(contact, state.time_s) >= 2;
+        let only_located = matches!(change, Change::Turn | Change::State);
+        let spent = only_located || self.changed_at(contact, state.time_s) >= 2;
         let stays = (at_start && spent) || theta > 1.0 - AT_END;
         (!stays).then_some(Event { contact, theta, at_start, change })
+    }
+
+    /// A change of a state's behaviour, unless the contact is almost at rest.
+    fn change_of_state(&self, piece: &Piece<'_>, pass: &Pass, contact: usize) -> Option<Change> {
+        let closed = piece.state.mode[contact] == ContactMode::Closed;
+        let moves = piece.system.has_states && pass.rate[contact].abs() > 1e-9 * self.speed;
+        let until = (closed && moves).then(|| piece.until_change(contact, 1.0))??;
+        (until < -LEAST_CHANGE).then_some(Change::State)
     }
 
     fn changed_at(&self, contact: usize, time_s: f64) -> u8 {
@@ -184,7 +204,7 @@ impl GateWatch {
             let landed = aimed.map(|event| event.change).filter(|&change| match change {
                 Change::Overlap(_) => self.has_landed(system, state, pass, contact, change),
                 Change::Force(_) => true,
-                Change::Turn => false,
+                Change::Turn | Change::State => false,
             });
             if let Some(Change::Overlap(mode) | Change::Force(mode)) = found.or(landed) {
                 self.set(state, contact, mode);
@@ -217,9 +237,10 @@ fn locate(piece: &Piece<'_>, contact: usize, change: Change) -> f64 {
         match change {
             Change::Overlap(ContactMode::Closed) => overlap,
             Change::Overlap(_) => -overlap,
-            Change::Force(ContactMode::Closed) => piece.closed_force(contact, overlap, rate),
-            Change::Force(_) => -piece.closed_force(contact, overlap, rate),
+            Change::Force(ContactMode::Closed) => piece.closed_force(contact, theta),
+            Change::Force(_) => -piece.closed_force(contact, theta),
             Change::Turn => -rate,
+            Change::State => -piece.until_change(contact, theta).unwrap_or(0.0),
         }
     };
     if signed(0.0) >= 0.0 {

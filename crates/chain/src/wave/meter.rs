@@ -184,7 +184,10 @@ fn term_power(
     contacts: Range<usize>,
 ) -> f64 {
     let force = &mut pass.scratch[contacts.clone()];
-    force.fill(0.0);
+    match term.law.info().nature {
+        Nature::WithState => force.copy_from_slice(&pass.of_states[contacts.clone()]),
+        _ => force.fill(0.0),
+    }
     let seen = crate::laws::Contacts {
         overlap: &pass.overlap[contacts.clone()],
         root: &pass.root[contacts.clone()],

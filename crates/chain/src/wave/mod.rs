@@ -2,6 +2,7 @@
 
 mod bounds;
 mod clocks;
+mod contact_states;
 mod dense;
 mod dormand_prince;
 mod energy;

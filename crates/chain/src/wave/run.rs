@@ -67,7 +67,7 @@ const FIRST_STEP: f64 = 1e-3;
 
 impl<'a> Wave<'a> {
     fn new(system: &'a System, table: &'a Table, control: Control, limits: Limits) -> Self {
-        let state = WaveState::start(system);
+        let state = WaveState::start(system, table.stages());
         let bodies = || vec![0.0; system.bodies()];
         let tolerance = match control {
             Control::Adaptive { tolerance } => tolerance,
@@ -113,6 +113,11 @@ impl<'a> Wave<'a> {
         self.work.force_passes += 1;
         self.work.bodies_passed += bodies.len() as u64;
         let at = (&self.x[..], &self.v[..]);
+        if self.system.has_states {
+            let seen = (at.0, at.1, &self.state.touching[..]);
+            let force = &mut self.pass.of_states;
+            self.state.states.stage(stage, self.system, contacts.clone(), seen, force);
+        }
         self.pass.accelerate(
             self.system,
             &self.state,
@@ -136,6 +141,7 @@ impl<'a> Wave<'a> {
         self.x[bodies.clone()].copy_from_slice(&self.state.x[bodies.clone()]);
         self.v[bodies.clone()].copy_from_slice(&self.state.v[bodies]);
         self.hold_seams(self.state.time_s);
+        self.combine_states(0.0, &[]);
         self.force_pass(0);
     }
 
@@ -161,6 +167,14 @@ impl<'a> Wave<'a> {
             (self.x[0], self.v[0]) = motion.at(self.state.time_s + node * h);
         }
         self.hold_seams(self.state.time_s + node * h);
+        self.combine_states(h, velocity);
+    }
+
+    fn combine_states(&mut self, h: f64, weights: &[f64]) {
+        if self.system.has_states {
+            let contacts = self.contacts();
+            self.state.states.combine(h, weights, &contacts);
+        }
     }
 
     /// One accepted step; returns whether an observer is finished.
@@ -295,6 +309,7 @@ impl<'a> Wave<'a> {
         let last = self.table.stages() - 1;
         self.a.swap(0, last);
         self.remember_largest();
+        self.accept_states();
         let changed = match self.control {
             Control::Adaptive { .. } => self.settle_gates(),
             Control::Fixed { .. } => self.follow_gates(),
@@ -344,6 +359,15 @@ impl<'a> Wave<'a> {
                 let overlap = self.state.overlap(self.system, contact);
                 self.state.largest[contact] = self.state.largest[contact].max(overlap);
             }
+        }
+    }
+
+    fn accept_states(&mut self) {
+        if self.system.has_states {
+            let (contacts, mut states) = (self.contacts(), std::mem::take(&mut self.state.states));
+            let v = &self.state.v;
+            states.accept(&contacts, |c| (self.state.overlap(self.system, c), v[c] - v[c + 1]));
+            self.state.states = states;
         }
     }
 

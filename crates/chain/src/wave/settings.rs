@@ -23,6 +23,9 @@ pub(super) fn check(control: Control, limits: &Limits, system: &System) -> Resul
         Control::Fixed { step_s } if !(step_s > 0.0 && step_s.is_finite()) => {
             setting("step in s", step_s)
         }
+        Control::Fixed { .. } if system.has_states => Err(SolveError::Refused(
+            "a law whose contacts have a state, as film_entrained, needs adaptive steps".to_owned(),
+        )),
         Control::Fixed { step_s } if step_s > system.scales().time_s => {
             Err(SolveError::StepTooLong { step_s, contact_time_s: system.scales().time_s })
         }

@@ -1,5 +1,6 @@
 //! Where a shot stands: positions, velocities, gates.
 
+use super::contact_states::ContactStates;
 use crate::system::System;
 
 /// What a contact does while a step lasts.
@@ -25,12 +26,13 @@ pub(crate) struct WaveState {
     pub touching: Vec<f64>,
     /// Largest overlap so far; followed only if a law remembers it.
     pub largest: Vec<f64>,
+    pub states: ContactStates,
 }
 
 impl WaveState {
     /// The start of a shot. Contacts without a gap count as closed: their
     /// force is 0 until they are pressed.
-    pub(super) fn start(system: &System) -> Self {
+    pub(super) fn start(system: &System, stages: usize) -> Self {
         let contacts = system.contacts();
         let mut state = Self {
             time_s: 0.0,
@@ -40,7 +42,9 @@ impl WaveState {
             passing: vec![0.0; contacts],
             touching: vec![0.0; contacts],
             largest: vec![0.0; contacts],
+            states: ContactStates::default(),
         };
+        state.states = ContactStates::new(system, stages, |c| state.overlap(system, c));
         for contact in 0..contacts {
             let overlap = state.overlap(system, contact);
             state.largest[contact] = overlap.max(system.offset_m[contact]).max(0.0);
@@ -72,5 +76,8 @@ impl WaveState {
         self.mode[contact] = mode;
         self.passing[contact] = f64::from(u8::from(mode == ContactMode::Closed));
         self.touching[contact] = f64::from(u8::from(mode != ContactMode::Open));
+        if mode == ContactMode::Open {
+            self.states.open(contact);
+        }
     }
 }

@@ -62,7 +62,10 @@ impl MovingBodies {
             relaxed_speed: relaxed * scales.speed_m_s,
             relaxed_length: relaxed * scales.speed_m_s * scales.time_s,
             untouched: system.bodies(),
-            sleeps_again: !whole_chain && system.beads() >= LONG_CHAIN && system.flies_free(),
+            sleeps_again: !whole_chain
+                && system.beads() >= LONG_CHAIN
+                && system.flies_free()
+                && !system.has_states,
             until_look: LOOK_EVERY,
         };
         let starts_moving = system.motion.is_some() || system.slope_m_s2 != 0.0;

@@ -64,7 +64,7 @@ fn each(
 }
 
 /// Whether a name means a parameter: its own, or that of the number it is one of, of any table.
-pub fn is_meant(name: &str, parameter: &str) -> bool {
+pub(crate) fn is_meant(name: &str, parameter: &str) -> bool {
     let rest = parameter.strip_prefix(name).map(|rest| match rest.strip_prefix('#') {
         Some(table) => table.trim_start_matches(|c: char| c.is_ascii_digit()),
         None => rest,

@@ -5,11 +5,11 @@ mod reference;
 mod unit_changes;
 
 pub use self::{
-    known::is_meant,
-    reference::{references, references_json},
+    reference::references,
     unit_changes::{held_loads, unit_changes},
 };
-pub(crate) use known::systematic;
+pub(crate) use known::{is_meant, systematic};
+pub(crate) use reference::references_json;
 
 use crate::failure::Failure;
 use crate::input;

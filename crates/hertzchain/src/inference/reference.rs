@@ -26,7 +26,7 @@ pub(super) fn of_unlike(experiment: &Experiment, path: &str) -> Option<String> {
 }
 
 /// For programs.
-pub fn references_json(model: &Model) -> Value {
+pub(crate) fn references_json(model: &Model) -> Value {
     let one = |(name, reference): (&str, &Reference)| {
         json!({
             "name": name,

@@ -13,7 +13,8 @@ pub(super) fn section(chain: &Chain, contact: usize) -> Option<&Section> {
 pub(super) fn elastic(chain: &Chain, contact: usize) -> Option<(f64, f64)> {
     let pair = chain.pair(contact)?;
     let laws = &section(chain, contact)?.laws;
-    let mut elastic = laws.iter().filter(|law| law.info().nature != Nature::Dissipative);
+    let pushes = |nature| matches!(nature, Nature::Elastic | Nature::ElasticPlastic);
+    let mut elastic = laws.iter().filter(|law| pushes(law.info().nature));
     let (law, more) = (elastic.next()?, elastic.next());
     if more.is_some() {
         return None;

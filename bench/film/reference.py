@@ -1,0 +1,74 @@
+"""Numbers by law.py and row.py for the tests of the Rust law: forces and loss of one contact along given motions, and rows.
+
+Writes reference.json. Both are of first order in time: values are extrapolated from a step and half of it.
+"""
+
+import json
+import pathlib
+
+import numpy as np
+
+from law import FilmLaw
+from pulse import MODULUS, REDUCED_RADIUS, STIFFNESS
+from row import shot
+
+SAMPLES, STEPS, NODES = 24, 40_000, 3000
+
+# Static force in N, amplitude in m, duration of a pulse or period of a sine in s, duration in s, viscosity in Pa s, α in 1/Pa.
+CASES = [
+    ("pulse", 0.12, 6.7e-6, 60e-6, 60e-6, 0.119, 0.0),
+    ("pulse", 0.24, 1.5e-6, 94e-6, 94e-6, 0.048, 0.0),
+    ("pulse", 0.24, 4.0e-6, 70e-6, 70e-6, 0.058, 15e-9),
+    ("pulse", 0.0, 6.7e-6, 60e-6, 54e-6, 0.119, 0.0),
+    ("sine", 30.0, 1.5e-6, 80e-6, 200e-6, 0.119, 0.0),
+    ("sine", 30.0, 1.5e-6, 80e-6, 200e-6, 0.058, 12e-9),
+]
+
+
+# Speed in m/s, viscosity in Pa s, α in 1/Pa of rows with 0.24 N.
+ROWS = [(0.5, 0.119, 0.0), (0.075, 0.048, 0.0), (0.15, 0.058, 15e-9)]
+
+
+def motion(kind, amplitude, period, times):
+    """Displacement of the driven side in m."""
+    if kind == "pulse":
+        return amplitude * np.sin(np.pi * times / period) ** 2
+    return amplitude * np.sin(2 * np.pi * times / period)
+
+
+def run(case, steps):
+    """Forces in N at the samples and energy lost in J at the end."""
+    kind, force, amplitude, period, duration, viscosity, alpha = case
+    static = (force / STIFFNESS) ** (2 / 3)
+    law = FilmLaw(REDUCED_RADIUS, MODULUS, viscosity, 1.2 * (static + amplitude), alpha, nodes=NODES).start(static)
+    overlaps = static + motion(kind, amplitude, period, duration / steps * np.arange(1, steps + 1))
+    forces = np.array([law.step(duration / steps, overlap) for overlap in overlaps])
+    return forces[steps // SAMPLES - 1 :: steps // SAMPLES], law.dissipated
+
+
+def reference(case):
+    """One case with what came out of it."""
+    steps = STEPS - STEPS % SAMPLES
+    (coarse, lost), (fine, less) = run(case, steps), run(case, 2 * steps)
+    names = ("kind", "static_n", "amplitude_m", "period_s", "duration_s", "viscosity_pa_s", "pressure_viscosity_per_pa")
+    numbers = {"force_n": [float(f"{value:.8g}") for value in 2 * fine - coarse], "loss_j": float(f"{2 * less - lost:.8g}")}
+    return dict(zip(names, case)) | numbers
+
+
+def row(speed, viscosity, alpha):
+    """Incident time of flight in s and peak force of the wall in N."""
+    coarse, fine = (np.array(shot(speed, viscosity, 0.24, alpha=alpha, step=step, nodes=1200)) for step in (1.25e-8, 6.25e-9))
+    tof, _, wall, *_ = 2 * fine - coarse
+    names = ("speed_m_s", "viscosity_pa_s", "pressure_viscosity_per_pa")
+    return dict(zip(names, (speed, viscosity, alpha))) | {"tof_s": float(f"{tof:.8g}"), "wall_n": float(f"{wall:.8g}")}
+
+
+def lines(results):
+    """A list of JSON, one result a line."""
+    return "[\n" + ",\n".join(json.dumps(result) for result in results) + "\n]"
+
+
+if __name__ == "__main__":
+    contacts, rows = lines(reference(case) for case in CASES), lines(row(*case) for case in ROWS)
+    path = pathlib.Path(__file__).with_name("reference.json")
+    path.write_text(f'{{"contacts": {contacts},\n"rows": {rows}}}\n')

@@ -1,0 +1,335 @@
+use super::{Closed, ContactState, LawError, LawInfo, Nature, Parameter, Source, Term};
+use crate::material::BeadPair;
+
+/// What oil in a pressed contact adds to Hertz's force: a film that the growing edge entrains as the
+/// inlet of an elastohydrodynamic contact does [Snoeijer2013], and a squeezed rim.
+///
+/// With K of Hertz, E* = 3K/(4 √R*), contact radius a and the overlap δ_e(s) at which the edge
+/// passed radius s (without oil s²/R*; oil leaves a film of s²/R* − δ_e that stays),
+///
+/// F = 2E* (a δ − ∫_0^a δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y) where a grows with y > 0;
+///
+/// the rim y relaxes: ẏ = δ̇ − (2E*/η) (κ a |y| / (c R*^{1.4}))^{5/3} sign y − y ȧ/(2a), c = c₊ for y > 0
+/// and c₋ for y < 0. Viscosity η exp(α p): with x = α k E* (β a y/R*²)^{1/3} and G = x/(1 − e^{−x}), β becomes
+/// β G^n and, for y > 0, η becomes η G^m. c₊, c₋, β, κ, k, m, n are pure numbers, fitted to a transient
+/// elastohydrodynamic contact (`bench/film`), not to measurements.
+///
+/// The law never creates energy: F δ̇ is the change of E* (∫_0^a (δ − δ_e)² ds + κ a y²) − (2/5) K δ^{5/2} plus
+/// a loss in the rim that is not negative. A contact starts dry, at rest, and again after each gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmEntrained {
+    /// Viscosity η in Pa s at ambient pressure.
+    pub viscosity_pa_s: f64,
+    /// Pressure–viscosity coefficient α in 1/Pa.
+    pub pressure_viscosity_per_pa: f64,
+    /// Stiffness K in N/m^{3/2} of the `elastic_hertz` beside it; `None`: from the materials.
+    pub stiffness: Option<f64>,
+}
+
+/// c₊ and c₋: the rim's resistance while squeezed and while drawn.
+const RIM: [f64; 2] = [3.47, 0.185];
+/// β: film that the edge leaves over the rim's overlap.
+const LEFT: f64 = 2.04;
+/// κ: the rim's stiffness.
+const STIFF: f64 = 2.41;
+/// k, m and n: pressure of an inlet, and how viscosity and film follow it.
+const PRESSURE: [f64; 3] = [1.262, -0.159, 0.6045];
+
+impl Term<4> for FilmEntrained {
+    const INFO: LawInfo = LawInfo {
+        name: "film_entrained",
+        equation: "F = 2 E* (a δ − ∫ δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y),  \
+                   ẏ = δ̇ − (2 E*/η) (κ a y/(c R*^{1.4}))^{5/3} − y ȧ/(2a),  E* = 3 K/(4 √R*)",
+        parameters: &[
+            Parameter {
+                name: "viscosity",
+                unit: "Pa s",
+                meaning: "viscosity η of the oil at ambient pressure",
+                source: Source::Required,
+                least: 0.0,
+            },
+            Parameter {
+                name: "pressure_viscosity",
+                unit: "1/Pa",
+                meaning: "pressure–viscosity coefficient α of η exp(α p)",
+                source: Source::Default(0.0),
+                least: 0.0,
+            },
+            Parameter {
+                name: "stiffness",
+                unit: "N/m^1.5",
+                meaning: "stiffness K of the Hertz contact that the oil is in",
+                source: Source::Hertz,
+                least: 0.0,
+            },
+        ],
+        validity: "beside elastic_hertz, in flooded contacts that are pressed or touch before the shot; \
+                   Newtonian isothermal oil, overlaps of 1 to 12 µm of steel balls, 0.03 to 0.3 Pa s, α up to 20 1/GPa",
+        reference: "Snoeijer2013",
+        nature: Nature::WithState,
+        gated: true,
+    };
+
+    fn new(values: &[Option<f64>]) -> Self {
+        Self {
+            viscosity_pa_s: values[0].unwrap_or(f64::NAN),
+            pressure_viscosity_per_pa: values[1].unwrap_or(0.0),
+            stiffness: values[2],
+        }
+    }
+
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 4], LawError> {
+        let stiffness = self.stiffness.unwrap_or_else(|| pair.hertz_stiffness());
+        let modulus = 0.75 * stiffness / pair.radius_m.sqrt();
+        Ok([modulus, pair.radius_m, self.viscosity_pa_s, self.pressure_viscosity_per_pa])
+    }
+
+    /// At rest the contact is Hertz's: all force is that of the state.
+    fn force(_k: &[f64; 4], _contact: Closed) -> f64 {
+        0.0
+    }
+
+    fn state(k: &[f64; 4]) -> Option<Box<dyn ContactState>> {
+        let &[modulus, radius, viscosity, alpha] = k;
+        // Without oil, or without elasticity, nothing is entrained.
+        (viscosity > 0.0 && modulus > 0.0).then(|| -> Box<dyn ContactState> {
+            let relaxing = |c: f64| {
+                2.0 * modulus / viscosity * (STIFF / (c * radius.powf(1.4))).powf(5.0 / 3.0)
+            };
+            let inlet = alpha * PRESSURE[0] * modulus * (LEFT / (radius * radius)).cbrt();
+            let relaxing = RIM.map(relaxing);
+            let rings = vec![Ring::default()];
+            let (advances, rate) = (true, 0.0);
+            Box::new(EntrainedFilm { radius, modulus, relaxing, inlet, rings, advances, rate })
+        })
+    }
+}
+
+/// What the edge left at one radius. The spacer's force is 2E* ∫ a dδ along the edge's way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Ring {
+    /// Radius a in m.
+    radius: f64,
+    /// Overlap δ_e in m when the edge passed.
+    overlap: f64,
+    /// ∫ a dδ up to there, in m².
+    push: f64,
+    /// ∫∫ a dδ dδ up to there, in m³: half the energy over E*.
+    work: f64,
+}
+
+impl Ring {
+    /// The edge at an overlap between this ring and the next: its radius rises as a power of the
+    /// overlap, such that `push` is right at both. Beyond the last ring the radius stays.
+    fn towards(self, outer: Option<&Self>, overlap: f64) -> Self {
+        let (rise, past) =
+            (outer.map_or(0.0, |outer| outer.overlap - self.overlap), overlap - self.overlap);
+        let wide = outer.map_or(0.0, |outer| outer.radius - self.radius);
+        let mean = match outer {
+            Some(outer) if wide > 0.0 => ((outer.push - self.push) / rise - self.radius) / wide,
+            _ => 0.5,
+        };
+        let mean = mean.clamp(0.02, 0.98);
+        let more = match wide > 0.0 {
+            true => wide * (past / rise).powf((1.0 - mean) / mean),
+            false => 0.0,
+        };
+        let push = (self.radius + more * mean) * past;
+        let work = self.push + past * (0.5 * self.radius + more * mean * mean / (1.0 + mean));
+        Self {
+            radius: self.radius + more,
+            overlap,
+            push: self.push + push,
+            work: self.work + past * work,
+        }
+    }
+}
+
+/// The edge of a contact that grows.
+struct Reach {
+    /// Radius a in m.
+    radius: f64,
+    /// Fresh film over u: β G^n √(R*/a).
+    film: f64,
+    /// n x G′/G.
+    slope: f64,
+}
+
+/// One contact with oil. Its numbers are u = y √(a/R*), whose rate √(a/R*) (δ̇ − loss) has neither ȧ nor
+/// a pole at a = 0, and, since the last ring, ∫ a dδ/(0.02 R*) and ∫∫ a dδ dδ/(0.02 R*)², all in m.
+#[derive(Clone, Debug)]
+struct EntrainedFilm {
+    radius: f64,
+    modulus: f64,
+    /// (2E*/η) (κ/(c R*^{1.4}))^{5/3} for c₊ and c₋.
+    relaxing: [f64; 2],
+    /// x over (a y)^{1/3}.
+    inlet: f64,
+    /// What the edge left, inner rings first; δ_e rises outward.
+    rings: Vec<Ring>,
+    /// Whether the edge advances at the start of the step; else it is held by what it left.
+    advances: bool,
+    /// Overlap rate there.
+    rate: f64,
+}
+
+/// Makes errors of ∫ a dδ errors of an overlap: a contact's radius over R*.
+const SPAN: f64 = 0.02;
+
+impl EntrainedFilm {
+    /// G and x G′/G for a rim of area a y.
+    fn thickening(&self, rim: f64) -> (f64, f64) {
+        let x = self.inlet * rim.cbrt();
+        if x < 1e-9 {
+            return (1.0, 0.0);
+        }
+        let less = -(-x).exp_m1();
+        (x / less, 1.0 - x * (1.0 - less) / less)
+    }
+
+    /// Solves a² = R* (δ + β G^n u √(R*/a)) by Newton in √a, from the side on which it converges
+    /// monotonically after one step.
+    fn reach(&self, unknown: f64, root: f64) -> Reach {
+        let root_radius = self.radius.sqrt();
+        let dry = root_radius * root;
+        if unknown < 0.0 {
+            return Reach { radius: dry, film: 0.0, slope: 0.0 };
+        }
+        let (level, thin) = (dry * dry, LEFT * self.radius * root_radius);
+        let mut q = self.outer().radius.max(dry).sqrt();
+        if q == 0.0 {
+            q = (thin * unknown).powf(0.2);
+        }
+        if q == 0.0 {
+            return Reach { radius: 0.0, film: 0.0, slope: 0.0 };
+        }
+        for _ in 0..30 {
+            let (film, slope) = match self.inlet > 0.0 {
+                true => {
+                    let (thick, slope) = self.thickening(unknown * q * root_radius);
+                    (thin * thick.powf(PRESSURE[2]), PRESSURE[2] * slope)
+                }
+                false => (thin, 0.0),
+            };
+            let (fourth, fresh) = (q * q * q * q, film * unknown);
+            let steep = 5.0 * fourth - level - slope * fresh / (3.0 * q);
+            let step = ((fourth - level) * q - fresh) / steep;
+            q -= step;
+            // Convergence is quadratic: what is left is rounding.
+            if step.abs() <= 1e-9 * q {
+                return Reach { radius: q * q, film: film / (self.radius * q), slope };
+            }
+        }
+        Reach { radius: f64::NAN, film: f64::NAN, slope: 0.0 }
+    }
+
+    fn outer(&self) -> Ring {
+        self.rings.last().copied().unwrap_or_default()
+    }
+
+    /// Where the edge has been drawn back to, along what it left.
+    fn held(&self, overlap: f64) -> Ring {
+        let next = self.rings.partition_point(|ring| ring.overlap <= overlap);
+        let inner = self.rings.get(next.saturating_sub(1)).copied().unwrap_or_default();
+        inner.towards(self.rings.get(next), overlap)
+    }
+
+    /// Force in N at a radius and ∫ a dδ, and the rate of u in m/s.
+    fn pushed(&self, unknown: f64, contact: Closed, (a, push): (f64, f64)) -> (f64, f64) {
+        // a y, with its sign.
+        let rim = unknown * (a * self.radius).sqrt();
+        let hertz = 2.0 / 3.0 * self.radius.sqrt() * contact.overlap * contact.root;
+        let force = 2.0 * self.modulus * (push + STIFF * rim - hertz);
+        let size = rim.abs();
+        let relaxing = match rim > 0.0 {
+            true if self.inlet > 0.0 => {
+                self.relaxing[0] / self.thickening(size).0.powf(PRESSURE[1])
+            }
+            true => self.relaxing[0],
+            false => self.relaxing[1],
+        };
+        let root_of_size = size.cbrt();
+        let given_way = relaxing * size * root_of_size * root_of_size;
+        (force, (a / self.radius).sqrt() * (contact.rate - given_way.copysign(rim)))
+    }
+
+    /// Rate of a² = R* (δ + fresh film) over the sizes of its parts, −1 to 1.
+    fn growth(&self, unknown: f64, contact: Closed, reach: &Reach) -> f64 {
+        let (_, rate) = self.pushed(unknown, contact, (reach.radius, 0.0));
+        let fresh = reach.film * (1.0 + reach.slope / 3.0) * rate;
+        (contact.rate + fresh) / (contact.rate.abs() + fresh.abs()).max(f64::MIN_POSITIVE)
+    }
+}
+
+impl ContactState for EntrainedFilm {
+    fn begin(&mut self, overlap_m: f64) {
+        let radius = (self.radius * overlap_m).sqrt();
+        let push = 2.0 / 3.0 * radius * overlap_m;
+        self.rings.truncate(1);
+        self.rings.push(Ring { radius, overlap: overlap_m, push, work: 0.4 * push * overlap_m });
+        (self.advances, self.rate) = (true, 0.0);
+    }
+
+    fn force_and_rates(&self, numbers_m: [f64; 3], contact: Closed) -> (f64, [f64; 3]) {
+        let [unknown, moved, _] = numbers_m;
+        if !self.advances {
+            let ring = self.held(contact.overlap);
+            let (force, rate) = self.pushed(unknown, contact, (ring.radius, ring.push));
+            return (force, [rate, 0.0, 0.0]);
+        }
+        let (a, span) = (self.reach(unknown, contact.root).radius, SPAN * self.radius);
+        let push = self.outer().push + moved * span;
+        let (force, rate) = self.pushed(unknown, contact, (a, push));
+        (force, [rate, a / span * contact.rate, push / (span * span) * contact.rate])
+    }
+
+    fn energy_j(&self, [unknown, _, worked]: [f64; 3], overlap_m: f64) -> f64 {
+        let bodies = match self.advances {
+            true => self.outer().work + worked * (SPAN * self.radius).powi(2),
+            false => self.held(overlap_m).work,
+        };
+        let rim = 0.5 * STIFF * unknown * unknown * self.radius;
+        let hertz = 4.0 / 15.0 * self.radius.sqrt() * overlap_m * overlap_m * overlap_m.sqrt();
+        2.0 * self.modulus * (bodies + rim - hertz)
+    }
+
+    fn until_change(&self, unknown_m: f64, contact: Closed) -> f64 {
+        let reach = self.reach(unknown_m, contact.root);
+        if self.advances {
+            return self.growth(unknown_m, contact, &reach);
+        }
+        let overtaken = 1.0 - (reach.radius / self.held(contact.overlap).radius).powi(2);
+        let drawn = self.rate < 0.0 && contact.overlap < self.outer().overlap;
+        if drawn { overtaken.min(contact.rate / self.rate) } else { overtaken }
+    }
+
+    fn accept(&mut self, [unknown, moved, worked]: [f64; 3], contact: Closed) -> [f64; 3] {
+        let (overlap, reach) = (contact.overlap, self.reach(unknown, contact.root));
+        let (outer, span) = (self.outer(), SPAN * self.radius);
+        let grows = self.growth(unknown, contact, &reach) > 0.0;
+        let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0]);
+        self.rate = contact.rate;
+        if was && reach.radius > outer.radius && overlap > outer.overlap {
+            let (push, work) = (outer.push + moved * span, outer.work + worked * span * span);
+            self.rings.push(Ring { radius: reach.radius, overlap, push, work });
+            self.advances = grows;
+        } else if was {
+            // Rounding of a contact at rest.
+            self.advances = grows;
+            numbers = [unknown, moved, worked];
+        } else {
+            let held = self.held(overlap);
+            self.advances = grows && reach.radius > held.radius;
+            if self.advances || overlap < outer.overlap {
+                let inside = |ring: &Ring| ring.overlap <= overlap;
+                self.rings.truncate(self.rings.partition_point(inside).max(1));
+                self.rings.push(held);
+            }
+        }
+        numbers
+    }
+
+    fn boxed(&self) -> Box<dyn ContactState> {
+        Box::new(self.clone())
+    }
+}

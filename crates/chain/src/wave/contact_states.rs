@@ -1,0 +1,154 @@
+//! States of contacts, integrated beside the motion: numbers of each, by the method's own stages.
+
+use crate::laws::{Closed, ContactState, Nature};
+use crate::system::{FLUSH, System, TermColumns};
+use std::ops::Range;
+
+#[derive(Clone, Debug)]
+struct StatefulContact {
+    contact: usize,
+    /// The numbers at the start of the step.
+    start_m: [f64; 3],
+    /// The same at the stage that is computed.
+    stage_m: [f64; 3],
+    state: Box<dyn ContactState>,
+}
+
+/// Contacts whose laws have a state, in order; none in most chains.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ContactStates {
+    contacts: Vec<StatefulContact>,
+    /// Rates of the numbers, a row a stage.
+    rates_m_s: Vec<Vec<[f64; 3]>>,
+}
+
+impl ContactStates {
+    /// All contacts as they rest at their overlaps in m.
+    pub(super) fn new(system: &System, stages: usize, overlap_m: impl Fn(usize) -> f64) -> Self {
+        let mut contacts = Vec::new();
+        for section in system.sections.iter().filter(|_| system.has_states) {
+            let with_state = |term: &&TermColumns| term.law.info().nature == Nature::WithState;
+            let Some(term) = section.gated.iter().find(with_state) else { continue };
+            for contact in section.contacts.clone().filter(|&c| system.has_contact(c)) {
+                let at = contact - section.contacts.start;
+                let Some(mut state) = term.law.state(&term.columns, at) else { continue };
+                state.begin(overlap_m(contact).max(0.0));
+                let (start_m, stage_m) = ([0.0; 3], [0.0; 3]);
+                contacts.push(StatefulContact { contact, start_m, stage_m, state });
+            }
+        }
+        Self { rates_m_s: vec![vec![[0.0; 3]; contacts.len()]; stages], contacts }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.contacts.is_empty()
+    }
+
+    /// The numbers of a stage: those at the start of the step and what the stages before it add.
+    pub(super) fn combine(&mut self, step_s: f64, weights: &[f64], moving: &Range<usize>) {
+        let all = self.contacts.iter_mut().enumerate();
+        for (at, own) in all.filter(|(_, own)| moving.contains(&own.contact)) {
+            let moved = moved(step_s, weights.iter().copied(), &self.rates_m_s, at);
+            own.stage_m = std::array::from_fn(|j| own.start_m[j] + moved[j]);
+        }
+    }
+
+    /// Forces and rates of a stage in the touching contacts of a part of the chain.
+    pub(super) fn stage(
+        &mut self,
+        stage: usize,
+        system: &System,
+        contacts: Range<usize>,
+        (x, v, touching): (&[f64], &[f64], &[f64]),
+        force_n: &mut [f64],
+    ) {
+        force_n[contacts.clone()].fill(0.0);
+        for (own, rate) in self.contacts.iter().zip(&mut self.rates_m_s[stage]) {
+            let c = own.contact;
+            if contacts.contains(&c) && touching[c] > 0.0 {
+                let overlap = system.offset_m[c] - (x[c + 1] - x[c]);
+                let closed = closed((overlap, v[c] - v[c + 1]));
+                let (force, own_rate) = own.state.force_and_rates(own.stage_m, closed);
+                force_n[c] += force;
+                *rate = own_rate;
+            } else {
+                *rate = [0.0; 3];
+            }
+        }
+    }
+
+    /// The largest error estimate of the numbers in m, with its contact; NaN if any is.
+    pub(super) fn error_m(&self, step_s: f64, weights: &[f64]) -> (f64, usize) {
+        let mut worst = (0.0, 0);
+        for (at, own) in self.contacts.iter().enumerate() {
+            for error in moved(step_s, weights.iter().copied(), &self.rates_m_s, at) {
+                if error.abs() > worst.0 || error.is_nan() {
+                    worst = (error.abs(), own.contact);
+                }
+            }
+        }
+        worst
+    }
+
+    /// Makes the end of a step its start, at the overlaps in m and rates in m/s there.
+    pub(super) fn accept(&mut self, moving: &Range<usize>, at: impl Fn(usize) -> (f64, f64)) {
+        for own in self.contacts.iter_mut().filter(|own| moving.contains(&own.contact)) {
+            own.start_m = own.state.accept(own.stage_m, closed(at(own.contact)));
+            own.stage_m = own.start_m;
+        }
+        let last = self.rates_m_s.len() - 1;
+        self.rates_m_s.swap(0, last);
+    }
+
+    /// A contact has opened: what comes next begins anew.
+    pub(super) fn open(&mut self, contact: usize) {
+        if let Some(at) = self.find(contact) {
+            let own = &mut self.contacts[at];
+            (own.start_m, own.stage_m) = ([0.0; 3], [0.0; 3]);
+            own.state.begin(0.0);
+        }
+    }
+
+    /// What `of` says of a contact's state and its numbers, moved by these weights of the
+    /// stages since the start of the step.
+    pub(super) fn seen(
+        &self,
+        contact: usize,
+        (step_s, weights): (f64, impl Iterator<Item = f64>),
+        of: impl Fn(&dyn ContactState, [f64; 3]) -> f64,
+    ) -> Option<f64> {
+        let at = self.find(contact)?;
+        let own = &self.contacts[at];
+        let moved = moved(step_s, weights, &self.rates_m_s, at);
+        Some(of(&*own.state, std::array::from_fn(|j| own.start_m[j] + moved[j])))
+    }
+
+    fn find(&self, contact: usize) -> Option<usize> {
+        self.contacts.binary_search_by_key(&contact, |own| own.contact).ok()
+    }
+
+    /// Energy in J of a contact's state at an overlap in m.
+    pub(super) fn energy_j(&self, contact: usize, overlap_m: f64) -> f64 {
+        let own = self.find(contact).map(|at| &self.contacts[at]);
+        own.map_or(0.0, |own| own.state.energy_j(own.start_m, overlap_m))
+    }
+}
+
+/// How far a contact's numbers move by some weights of the stages.
+fn moved(
+    step_s: f64,
+    weights: impl Iterator<Item = f64>,
+    rates_m_s: &[Vec<[f64; 3]>],
+    at: usize,
+) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (weight, row) in weights.zip(rates_m_s) {
+        sum = std::array::from_fn(|j| sum[j] + weight * row[at][j]);
+    }
+    sum.map(|sum| step_s * sum)
+}
+
+/// A contact as states see it.
+fn closed((overlap_m, rate_m_s): (f64, f64)) -> Closed {
+    Closed::new(if overlap_m > FLUSH { overlap_m } else { 0.0 }, rate_m_s)
+}
