@@ -176,6 +176,9 @@ struct EntrainedFilm {
 /// Makes errors of ∫ a dδ errors of an overlap: a contact's radius over R*.
 const SPAN: f64 = 0.02;
 
+/// Growth below which an edge turns: a step that ends there ends a little before or after.
+const TURNS: f64 = 1e-6;
+
 impl EntrainedFilm {
     /// G and x G′/G for a rim of area a y.
     fn thickening(&self, rim: f64) -> (f64, f64) {
@@ -306,7 +309,7 @@ impl ContactState for EntrainedFilm {
     fn accept(&mut self, [unknown, moved, worked]: [f64; 3], contact: Closed) -> [f64; 3] {
         let (overlap, reach) = (contact.overlap, self.reach(unknown, contact.root));
         let (outer, span) = (self.outer(), SPAN * self.radius);
-        let grows = self.growth(unknown, contact, &reach) > 0.0;
+        let grows = self.growth(unknown, contact, &reach) > TURNS;
         let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0]);
         self.rate = contact.rate;
         if was && reach.radius > outer.radius && overlap > outer.overlap {
