@@ -257,3 +257,22 @@ fn maxima_that_loose_runs_do_not_show_are_not_passed_over() {
         assert!(off < 3e-5 + stated, "{accuracy:e}: {off:e} {stated:e}");
     }
 }
+
+/// The loop with equal steps has no states of contacts.
+#[test]
+fn rows_with_a_film_of_oil_take_the_adaptive_loop() {
+    let text = "[materials.steel]\nyoung_modulus = \"213 GPa\"\npoisson_ratio = 0.3\n\
+                [striker]\nspeed = \"0.3 m/s\"\n[[beads]]\ncount = 10\nradius = \"6.35 mm\"\n\
+                mass = \"8.54 g\"\nmaterial = \"steel\"\n[[contacts]]\nlaws = [\"elastic_hertz\", \
+                { law = \"film_entrained\", viscosity = \"48 mPa s\", pressure_viscosity = \"16 1/GPa\" }]\n\
+                [far_end]\nkind = \"half-bead\"\n[sensors]\nbead = 3\n";
+    let experiment = Experiment::from_text("film.toml", text).unwrap();
+    let (plan, _) = Plan::from_experiment(&experiment, None).unwrap();
+    let plan = plan.for_flights().with_accuracy(1e-4);
+    let plans = [plan];
+    let together = run_plans(&plans, Control::None, InstructionSet::default(), &|| {}).remove(0);
+    let alone = shoot(&plans[0]).unwrap().flight.unwrap();
+    let error = together.unwrap().flight.unwrap().incident_s / alone.incident_s - 1.0;
+    // The accuracy asked.
+    assert!(error.abs() < 1e-4, "{error:e}");
+}
