@@ -1,113 +1,83 @@
-//! Tables as text (CSV), as every result file has them.
+//! Tables as text (CSV), as every result file has them: views of JSON, which has the same numbers.
 
 use crate::table::cell;
-use csv::{Writer, WriterBuilder};
+use csv::WriterBuilder;
 use hertzchain_measure::records::no_formula;
+use serde_json::Value;
 
-/// A table under way: a line of titles, then lines of as many cells.
-#[derive(Debug)]
-pub(crate) struct Csv(Writer<Vec<u8>>);
+/// A file's name and what stands in it.
+pub(crate) type Table = (&'static str, String);
 
-/// A cell.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Cell {
-    /// Words, in quotes where they hold a comma, a quote or the end of a line.
-    Words(String),
-    /// A number with the fewest digits that give it back exactly; nothing if it is not
-    /// finite.
-    Number(f64),
-    /// Nothing.
-    Empty,
-}
-
-impl From<&str> for Cell {
-    fn from(words: &str) -> Self {
-        Self::Words(words.to_owned())
-    }
-}
-
-impl From<String> for Cell {
-    fn from(words: String) -> Self {
-        Self::Words(words)
-    }
-}
-
-impl From<f64> for Cell {
-    fn from(number: f64) -> Self {
-        Self::Number(number)
-    }
-}
-
-impl From<usize> for Cell {
-    fn from(count: usize) -> Self {
-        Self::Words(count.to_string())
-    }
-}
-
-impl From<bool> for Cell {
-    fn from(is: bool) -> Self {
-        Self::Words(is.to_string())
-    }
-}
-
-impl<T: Into<Cell>> From<Option<T>> for Cell {
-    fn from(value: Option<T>) -> Self {
-        value.map_or(Self::Empty, Into::into)
-    }
-}
-
-impl Cell {
-    fn text(self) -> String {
-        match self {
-            Self::Number(number) if number.is_finite() => cell(number),
-            Self::Words(words) => no_formula(&words).into_owned(),
-            Self::Number(_) | Self::Empty => String::new(),
-        }
-    }
-}
-
-impl Csv {
-    /// A table with these titles.
-    pub(crate) fn new<T: Into<Cell>>(titles: impl IntoIterator<Item = T>) -> Self {
-        // Lines of any length, so that writing to memory has no way to fail.
-        let writer = WriterBuilder::new().flexible(true).from_writer(Vec::new());
-        Self(writer).with(titles)
-    }
-
-    /// The same with a line more.
-    pub(crate) fn with<T: Into<Cell>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
-        let cells = cells.into_iter().map(|cell| cell.into().text());
-        let written = self.0.write_record(cells);
+/// A table of titles and lines. Words are quoted where they hold a comma, a quote or the end of a
+/// line; numbers have the fewest digits that give them back exactly; null is an empty cell.
+pub(crate) fn table<T: AsRef<str>, L: IntoIterator<Item = Value>>(
+    titles: impl IntoIterator<Item = T>,
+    lines: impl IntoIterator<Item = L>,
+) -> String {
+    // Lines of any length, so that writing to memory has no way to fail.
+    let mut writer = WriterBuilder::new().flexible(true).from_writer(Vec::new());
+    let mut write = |cells: Vec<String>| {
+        let written = writer.write_record(cells);
         debug_assert!(written.is_ok(), "{written:?}");
-        self
-    }
+    };
+    write(titles.into_iter().map(|title| no_formula(title.as_ref()).into_owned()).collect());
+    lines.into_iter().for_each(|line| write(line.into_iter().map(text).collect()));
+    // Memory takes all there is, and cells are text: neither of both can fail.
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
 
-    /// The same with a line more for each item.
-    pub(crate) fn with_all<I, T: Into<Cell>, L: IntoIterator<Item = T>>(
-        self,
-        items: impl IntoIterator<Item = I>,
-        line: impl Fn(I) -> L,
-    ) -> Self {
-        let items = items.into_iter();
-        items.fold(self, |table, item| table.with(line(item)))
+fn text(value: Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(words) => no_formula(&words).into_owned(),
+        Value::Number(number) if number.is_f64() => cell(number.as_f64().unwrap_or(f64::NAN)),
+        other => other.to_string(),
     }
+}
 
-    /// As text.
-    pub(crate) fn text(self) -> String {
-        // Memory takes all there is, and cells are text: neither of both can fail.
-        let bytes = self.0.into_inner().unwrap_or_default();
-        String::from_utf8(bytes).unwrap_or_default()
-    }
+/// A column's title, and where its value stands in a line's JSON: a pointer.
+pub(crate) type Column = (String, String);
+
+/// Columns by their titles, separated by commas; `title=place` where a value's place, such as
+/// `limit/percent_68`, is not its title.
+pub(crate) fn columns(titles: &str) -> Vec<Column> {
+    let column = |title: &str| {
+        let (title, place) = title.split_once('=').unwrap_or((title, title));
+        (title.to_owned(), format!("/{place}"))
+    };
+    titles.split(',').map(column).collect()
+}
+
+/// A table of JSON objects, one a line; what an object does not have is an empty cell.
+pub(crate) fn view(lines: &[Value], columns: &[Column]) -> String {
+    let titles = columns.iter().map(|(title, _)| title);
+    let line = |line: &Value| {
+        let cell = |(_, place): &Column| line.pointer(place).cloned().unwrap_or_default();
+        columns.iter().map(cell).collect::<Vec<_>>()
+    };
+    table(titles, lines.iter().map(line))
+}
+
+/// Members of a list; none of what is no list.
+pub(crate) fn list(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+/// A table with a line a column, for one object: its numbers by name.
+pub(crate) fn quantities(of: &Value, columns: &[Column]) -> String {
+    let value = |place: &str| of.pointer(place).cloned().unwrap_or_default();
+    let lines = columns.iter().map(|(title, place)| [title.as_str().into(), value(place)]);
+    table(["quantity", "value"], lines)
 }
 
 /// A square table: names along and down.
-pub(crate) fn square(names: &[&str], value: impl Fn(usize, usize) -> Option<f64>) -> Csv {
-    let titles = std::iter::once("name").chain(names.iter().copied());
-    let line = |(i, name): (usize, &&str)| {
-        let values = (0..names.len()).map(|j| Cell::from(value(i, j)));
-        std::iter::once(Cell::from(*name)).chain(values).collect::<Vec<_>>()
-    };
-    Csv::new(titles).with_all(names.iter().enumerate(), line)
+pub(crate) fn square(names: &[String], rows: &Value) -> String {
+    let titles = std::iter::once("name").chain(names.iter().map(String::as_str));
+    let lines = names
+        .iter()
+        .zip(list(rows))
+        .map(|(name, row)| std::iter::once(name.as_str().into()).chain(list(row).iter().cloned()));
+    table(titles, lines)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! `design`: what to measure next.
 
-use crate::csv::{Cell, Csv};
+use crate::csv::{Table, columns, list, table, view};
 use crate::failure::Failure;
 use crate::inference::{self, is_meant, references_json, user};
-use crate::options::{DesignOptions as Arguments, Preload, WayKind};
+use crate::options::{DesignOptions as Arguments, Preload};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fit, Fitting,
@@ -120,19 +120,9 @@ fn choices(arguments: &Arguments) -> Choices {
         }
     }
     for cost in &arguments.costs {
-        choices.costs[kind(cost.of) as usize] = cost.value;
+        choices.costs[Kind::from(cost.of) as usize] = cost.value;
     }
     choices
-}
-
-fn kind(of: WayKind) -> Kind {
-    match of {
-        WayKind::Incident => Kind::Incident,
-        WayKind::Reflected => Kind::Reflected,
-        WayKind::Ratio => Kind::Ratio,
-        WayKind::Sensor => Kind::Sensor,
-        WayKind::Preload => Kind::Preload,
-    }
 }
 
 /// Fits, and ranks candidates by what they would determine of the targets.
@@ -255,40 +245,20 @@ pub fn json(problem: &CurveProblem, run_design: &DesignResult) -> Value {
     })
 }
 
-/// Every table: files' names and what stands in them.
-pub fn tables(run_design: &DesignResult) -> Vec<(&'static str, String)> {
-    let found = &run_design.design;
+/// Every table, as views of what [`json`] returns: files' names and what stands in them.
+pub fn tables(found: &Value) -> Vec<Table> {
+    let named = list(&found["parameters"]).iter().zip(list(&found["units"]));
+    let now = named.clone().zip(list(&found["standard_errors_now"]));
+    let now = now.map(|((name, unit), sd)| [name.clone(), unit.clone(), sd.clone()]);
+    let errors = named.enumerate().map(|(at, (name, unit))| {
+        let [name, unit] = [name, unit].map(|text| text.as_str().unwrap_or_default());
+        (titled(&format!("{name}_error"), unit), format!("/standard_errors/{at}"))
+    });
+    let reported = columns("information_nats,cost,information_over_cost");
+    let shown: Vec<_> = columns("measure").into_iter().chain(errors).chain(reported).collect();
     vec![
-        ("design.csv", ranked(run_design, &found.ranked)),
-        ("series.csv", ranked(run_design, &found.greedy)),
-        ("now.csv", now(run_design)),
+        ("design.csv", view(list(&found["ranked"]), &shown)),
+        ("series.csv", view(list(&found["series"]), &shown)),
+        ("now.csv", table(["name", "unit", "standard_error"], now)),
     ]
-}
-
-/// One line a candidate, best first.
-fn ranked(run_design: &DesignResult, ranked: &[Expected]) -> String {
-    let names = run_design.names.iter().zip(&run_design.units);
-    let names = names.map(|(name, unit)| titled(&format!("{name}_error"), unit));
-    let titles = std::iter::once("measure".to_owned()).chain(names);
-    let reported = ["information_nats", "cost", "information_over_cost"].map(str::to_owned);
-    let table = Csv::new(titles.chain(reported));
-    let line = |expected: &Expected| {
-        let name = Cell::from(run_design.candidates[expected.candidate].name.clone());
-        let after = expected.after.iter().map(|sd| Cell::from(*sd));
-        let cells = std::iter::once(name).chain(after);
-        let cost = run_design.candidates[expected.candidate].cost;
-        let reported = [expected.gain, cost, expected.gain_per_cost].map(Cell::from);
-        cells.chain(reported).collect::<Vec<_>>()
-    };
-    table.with_all(ranked, line).text()
-}
-
-/// One line a parameter or combination that is to be tightened: its standard error so far.
-fn now(run_design: &DesignResult) -> String {
-    let line = |((name, unit), sd): ((&String, &String), &f64)| -> [Cell; 3] {
-        [name.clone().into(), unit.clone().into(), (*sd).into()]
-    };
-    let named = run_design.names.iter().zip(&run_design.units);
-    let lines = named.zip(&run_design.design.before);
-    Csv::new(["name", "unit", "standard_error"]).with_all(lines, line).text()
 }

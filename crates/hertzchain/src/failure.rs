@@ -188,8 +188,17 @@ fn placeless(finding: &Finding) -> String {
     format!("{finding}: {}{help}", finding.label())
 }
 
+/// Why there is no shot at a speed, in words.
+pub fn why(error: &StudyError) -> String {
+    let of_speed = match error {
+        StudyError::Mistakes(mistakes) => of_speed(mistakes),
+        _ => None,
+    };
+    of_speed.unwrap_or_else(|| error.to_string())
+}
+
 /// A mistake that is the speed's own, without a place.
-pub fn of_speed(mistakes: &Mistakes) -> Option<String> {
+fn of_speed(mistakes: &Mistakes) -> Option<String> {
     match mistakes.findings() {
         [finding] if underlines_speed(finding) => Some(placeless(finding)),
         _ => None,

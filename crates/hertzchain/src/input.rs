@@ -1,14 +1,12 @@
 //! From arguments to an experiment and a plan.
 
 use crate::failure::Failure;
-use crate::options::Given;
-use crate::options::{Input, Pick, SimulationOptions as How, Solver};
+use crate::options::{Given, Input, SimulationOptions as How};
 use crate::quantity::Style;
 use hertzchain_chain::System;
 use hertzchain_experiment::{Experiment, Mistakes, OpenError, Units, longest_duration_s, preset};
 use hertzchain_measure::records::text;
-use hertzchain_sim as study;
-use hertzchain_sim::{InstructionSet, Plan};
+use hertzchain_sim::{InstructionSet, Method, Plan};
 use std::path::Path;
 
 /// The preset that is used when no experiment is named.
@@ -121,27 +119,15 @@ pub(crate) fn adjust(how: &How, plan: &mut Plan) {
     let step = how.step.as_ref().map(Given::value);
     let duration = how.duration.as_ref().map(Given::value);
     plan.duration_s = duration.or(plan.duration_s);
-    if let Some(pick) = how.pick {
-        plan.pick = match pick {
-            Pick::Peak => study::Pick::Peak,
-            Pick::Flank10 => study::Pick::Flank10,
-            Pick::Flank50 => study::Pick::Flank50,
-            Pick::CrossCorrelation => study::Pick::CrossCorrelation,
-        };
-    }
+    plan.pick = how.pick.map_or(plan.pick, Into::into);
     // A step in the file is that of the file's solver.
     plan.step_s = if how.solver.is_some() { step } else { step.or(plan.step_s) };
-    plan.method = match how.solver {
-        Some(Solver::Adaptive) => study::Method::Adaptive,
-        Some(Solver::Rk4) => study::Method::Rk4,
-        Some(Solver::Verlet) => study::Method::Verlet,
-        None => plan.method,
-    };
+    plan.method = how.solver.map_or(plan.method, Into::into);
 }
 
 /// Refuses a step for a solver that chooses its own, and a duration without end.
 pub(crate) fn check_effort(how: &How, plan: &Plan, units: Units) -> Result<(), Failure> {
-    if how.step.is_some() && plan.method == study::Method::Adaptive {
+    if how.step.is_some() && plan.method == Method::Adaptive {
         return Err(Failure::User(
             "the adaptive solver chooses its own steps; --step needs --solver rk4 or verlet".into(),
         ));

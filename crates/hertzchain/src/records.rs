@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use crate::measure::{self, MeasureResult};
 use crate::options::MeasureOptions;
-use hertzchain_measure::Curves;
 pub use hertzchain_measure::records::{Channel, Record};
 
 /// Measures times of flight on records in memory: each is a shot, or holds several that are cut.
@@ -41,7 +40,5 @@ pub fn measure_records(
     options: &MeasureOptions,
 ) -> Result<MeasureResult, Failure> {
     let shots = hertzchain_measure::measure_records(records, &measure::options(options)?, &());
-    measure::suits(&shots)?;
-    let curves = Curves::of(&shots.shots, &measure::grouping(options));
-    Ok(MeasureResult { shots, curves })
+    MeasureResult::new(shots, options)
 }

@@ -2,15 +2,14 @@
 
 use crate::failure::Failure;
 use crate::options::{SweepOptions, check_speeds};
-use crate::shot::ShotView;
-use crate::{input, missing, options};
+use crate::{input, missing, shot};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
 use hertzchain_sim::{
-    Batch, BatchOptions, BatchResult, BatchShot, Calibration, Column, ErrorControl, Plan, Shard,
-    parse_speeds,
+    Batch, BatchOptions, BatchResult, BatchShot, Calibration, Column, Plan, Shard, parse_speeds,
 };
 use serde::{Serialize, Serializer};
+use serde_json::{Value, json};
 
 /// A batch of shots of an experiment, computed as the options ask.
 ///
@@ -42,11 +41,7 @@ pub fn batch(
         pick: plan.pick,
         rebound: options.rebound,
         checked: options.how.check,
-        error_control: match options.error_control {
-            options::ErrorControl::PerShot => ErrorControl::PerShot,
-            options::ErrorControl::Calibrated => ErrorControl::Calibrated,
-            options::ErrorControl::None => ErrorControl::None,
-        },
+        error_control: options.error_control.into(),
         set: input::instruction_set()?,
     };
     Ok(Batch::new(experiment, speeds_m_s, options)?)
@@ -157,13 +152,13 @@ pub struct SweepSummary {
     /// The default experiment that was assumed, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub assumed_model: Option<String>,
-    calibration: Option<CalibrationView>,
+    calibration: Value,
     /// How errors were controlled, and why.
     pub error_control: String,
     /// Name of the experiment.
     pub experiment: String,
-    power_law_incident: LawView,
-    power_law_reflected: LawView,
+    power_law_incident: Value,
+    power_law_reflected: Value,
 }
 
 impl SweepSummary {
@@ -173,10 +168,12 @@ impl SweepSummary {
         result: &BatchResult,
         calibration: Option<&Calibration>,
     ) -> Self {
-        let law = |of| LawView::of(result.rows.law(of, result.accuracy));
+        let law = |of| law(result.rows.law(of, result.accuracy));
         Self {
             assumed_model: None,
-            calibration: calibration.map(CalibrationView::of),
+            calibration: json!(calibration.map(|of| json!({
+                "count": of.shots, "accuracy_reached": of.reached, "way": of.to_string(),
+            }))),
             error_control: result.error_control.clone(),
             experiment: experiment.name().to_owned(),
             power_law_incident: law(Column::Incident),
@@ -185,61 +182,26 @@ impl SweepSummary {
     }
 }
 
-#[derive(Debug, Serialize)]
-struct CalibrationView {
-    count: usize,
-    accuracy_reached: f64,
-    way: String,
-}
-
-impl CalibrationView {
-    fn of(calibration: &Calibration) -> Self {
-        let (count, accuracy_reached) = (calibration.shots, calibration.reached);
-        Self { count, accuracy_reached, way: calibration.to_string() }
-    }
-}
-
 /// A fit of times against speed, with its standard errors and with what the accuracies of the
 /// times alone leave open. Two speeds determine no errors and no R²: null.
-#[derive(Debug, Serialize)]
-#[serde(untagged)]
-enum LawView {
-    Missing {
-        missing: String,
-    },
-    Law {
-        covariance: f64,
-        exponent: f64,
-        exponent_accuracy: Option<f64>,
-        exponent_error: f64,
-        prefactor_accuracy_s: Option<f64>,
-        prefactor_error_s: f64,
-        prefactor_s: f64,
-        r_squared: Option<f64>,
-        residuals: Vec<f64>,
-        speeds: usize,
-    },
-}
-
-impl LawView {
-    fn of((law, least): (Result<PowerLaw, FitError>, Result<Uncertainty, FitError>)) -> Self {
-        let least = least.ok();
-        match law {
-            Err(error) => Self::Missing { missing: missing::law(&error) },
-            Ok(law) => Self::Law {
-                covariance: law.covariance,
-                exponent: law.exponent,
-                exponent_accuracy: least.as_ref().map(|least| least.exponent),
-                exponent_error: law.exponent_error,
-                prefactor_accuracy_s: least.map(|it| law.prefactor * it.prefactor_relative),
-                prefactor_error_s: law.prefactor_error,
-                prefactor_s: law.prefactor,
-                r_squared: (law.residuals.len() > 2).then_some(law.r_squared),
-                speeds: law.residuals.len(),
-                residuals: law.residuals,
-            },
-        }
-    }
+fn law((law, least): (Result<PowerLaw, FitError>, Result<Uncertainty, FitError>)) -> Value {
+    let law = match law {
+        Err(error) => return json!({ "missing": missing::law(&error) }),
+        Ok(law) => law,
+    };
+    let least = least.ok();
+    json!({
+        "covariance": law.covariance,
+        "exponent": law.exponent,
+        "exponent_accuracy": least.as_ref().map(|least| least.exponent),
+        "exponent_error": law.exponent_error,
+        "prefactor_accuracy_s": least.map(|it| law.prefactor * it.prefactor_relative),
+        "prefactor_error_s": law.prefactor_error,
+        "prefactor_s": law.prefactor,
+        "r_squared": (law.residuals.len() > 2).then_some(law.r_squared),
+        "speeds": law.residuals.len(),
+        "residuals": law.residuals,
+    })
 }
 
 impl Serialize for SweepResult {
@@ -254,28 +216,31 @@ impl Serialize for SweepResult {
     }
 }
 
+/// The shots, one of which at a time is JSON.
 struct Points<'a>(&'a SweepResult);
 
 impl Serialize for Points<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let SweepResult { points, result, plan, .. } = self.0;
-        serializer.collect_seq(points.iter().map(|it| PointView::of(it, result.units, plan)))
+        serializer.collect_seq(points.iter().map(|it| point(it, result.units, plan)))
     }
 }
 
-#[derive(Serialize)]
-#[serde(untagged)]
-enum PointView<'a> {
-    Failed { speed_m_s: f64, error: String },
-    Shot(Box<ShotView<'a>>),
-}
+/// What stands in the place of the energy budget in a sweep.
+const NO_BUDGET: &str =
+    "a sweep asks for times of flight and keeps no energy budget; `hertzchain shot` does";
 
-impl<'a> PointView<'a> {
-    fn of(point: &'a BatchShot, units: Units, plan: &Plan) -> Self {
-        let speed_m_s = point.speed_m_s;
-        match &point.shot {
-            Err(error) => Self::Failed { speed_m_s, error: error.to_string() },
-            Ok(shot) => Self::Shot(Box::new(ShotView::of_sweep((point, shot), units, plan))),
+fn point(of: &BatchShot, units: Units, plan: &Plan) -> Value {
+    let mut all = match &of.shot {
+        Err(error) => json!({ "error": error.to_string() }),
+        Ok(shot) => shot::json(shot, units, plan),
+    };
+    if of.shot.is_ok() {
+        all["warnings"] = json!(of.warnings);
+        if all["energy"].is_null() {
+            all["energy"] = json!({ "missing": NO_BUDGET });
         }
     }
+    all["speed_m_s"] = of.speed_m_s.into();
+    all
 }

@@ -6,7 +6,7 @@ use crate::failure::PyFailure;
 use crate::job::Job;
 use crate::json;
 use crate::options::parsed;
-use hertzchain::failure::{Failure, of_speed};
+use hertzchain::failure::{Failure, why};
 use hertzchain::options::SweepOptions;
 use hertzchain::sweep::{self, SweepSummary};
 use hertzchain_sim::{Batch, BatchResult, COLUMNS, Shard, StudyError, parse_speeds, stopped};
@@ -22,15 +22,6 @@ pub(crate) fn speeds<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, Py
     let list = parse_speeds(text);
     let list = list.map_err(|error| PyFailure::from(Failure::User(error.to_string())))?;
     Ok(list.into_pyarray(py))
-}
-
-/// Why a row has no shot.
-fn why(error: &StudyError) -> String {
-    let of_speed = match error {
-        StudyError::Mistakes(mistakes) => of_speed(mistakes),
-        _ => None,
-    };
-    of_speed.unwrap_or_else(|| error.to_string())
 }
 
 /// A sweep or an ensemble with everything that its numbers follow from; picklable.

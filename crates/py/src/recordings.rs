@@ -6,10 +6,9 @@ use crate::job::Job;
 use crate::json;
 use crate::options::parsed;
 use hertzchain::campaign::PreparedCampaign;
-use hertzchain::inference::wanted;
-use hertzchain::measure as measuring;
+use hertzchain::measure::{self as measuring, MeasureResult};
 use hertzchain::options::{CampaignOptions, MeasureOptions as Measure};
-use hertzchain_measure::{Curves, Watch, laws_csv, ratios_csv, shots_csv, speeds_csv};
+use hertzchain_measure::{Watch, laws_csv, ratios_csv, shots_csv, speeds_csv};
 use hertzchain_sim::rig::Progress;
 use hertzchain_sim::{Stop, stopped};
 use pyo3::prelude::*;
@@ -78,15 +77,10 @@ pub(crate) fn measure<'py>(
     let arguments: Measure = parsed("measure", options)?;
     // A single recording may have millions of samples.
     let (found, tables) = Job::pooled(progress, threads).run_apart(py, move |stop| {
-        let (files, notes) = measuring::files(&records, arguments.shots.as_deref())?;
         let how = measuring::options(&arguments)?;
-        let mut measured = hertzchain_measure::measure(&files, &how, &Counted(stop));
-        measured.notes.splice(0..0, notes);
-        wanted()?;
-        measuring::suits(&measured)?;
-        let grouping = measuring::grouping(&arguments);
-        let curves = Curves::of(&measured.shots, &grouping);
-        wanted()?;
+        let watch = Counted(stop);
+        let found = measuring::measure_watched(&records, &arguments, &how, &watch)?;
+        let MeasureResult { shots: measured, curves } = found;
         let mut found = measuring::json(&measured, &curves);
         let wrong = measuring::evaluate(&measured).err();
         found["verdict"] = wrong.map_or(serde_json::Value::Null, |failure| {

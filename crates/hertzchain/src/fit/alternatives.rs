@@ -1,6 +1,6 @@
 //! Other models of the same data.
 
-use super::{asked, best_fit};
+use super::{asked, best_fit, finer};
 use crate::failure::Failure;
 use crate::inference::{self, is_meant, unit_changes, user, wanted};
 use crate::options::{
@@ -93,7 +93,7 @@ fn other(
     };
     let (posed, without) = posed(against, problem, arguments).map_err(of_rival)?;
     let reported = unit_changes(posed.model(), &arguments.modelled.set);
-    let (posed, fit) = best_fit(posed, 0, &asked(arguments)).map_err(of_rival)?;
+    let (posed, fit) = best_fit(posed, 0, &asked(arguments), finer).map_err(of_rival)?;
     if !fit.ending.converged() {
         return Ok(Err(Unfitted {
             chi_square: fit.chi_square(),

@@ -15,7 +15,7 @@ pub use self::{
     limits::Limit,
     more::{Curves, More, Sampled},
     results::{inferred, joined, json, rows_json},
-    tables::{of_any as tables_of_any, tables},
+    tables::{tables, tables_of_any},
 };
 
 use crate::failure::Failure;
@@ -24,8 +24,8 @@ use crate::options::FitOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Advice, Covariance, CurveProblem, Data, Fit, FitCurve, Fitting, FreeNumber, Goodness,
-    Identifiability, Loss, MeasuredCurve, Observable, Parameter, Prior, Problem, PulseProblem,
-    Started, fit as least_squares,
+    Identifiability, Loss, MeasuredCurve, Observable, Parameter, Prior, Problem, Started,
+    fit as least_squares,
 };
 
 /// Residuals beyond so many standard errors count by their size when outliers are expected.
@@ -94,6 +94,19 @@ impl TableFit<'_> {
 }
 
 impl Inferred {
+    /// Adds what the data determine, and limits of parameters at bounds.
+    fn new(
+        problem: &dyn Problem,
+        (fit, covariance, more): (Fit, Covariance, More),
+        goodness: Goodness,
+        label: impl Fn(usize) -> String,
+    ) -> Result<Self, Failure> {
+        let parameters = problem.parameters().to_vec();
+        let identifiability = Identifiability::new(&parameters, &fit, label);
+        let limits = limits::limits(problem, (&fit, &covariance), &identifiability, &more)?;
+        Ok(Self { parameters, fit, covariance, goodness, identifiability, more, limits })
+    }
+
     /// Standard error of a parameter by the covariance; infinite where the data leave
     /// the parameter open, however finite a linear analysis may be.
     pub fn standard_error(&self, at: usize) -> f64 {
@@ -222,49 +235,26 @@ const MOST_FINER: u32 = 2;
 /// The best fit, with the problem that it is of: with more accurate curves, where others have no
 /// minimum. Errors of curves jump where the solver takes another number of steps, and hide what is
 /// small.
-fn best_fit<P: Modelled>(
+fn best_fit<P: Problem>(
     mut problem: P,
     nuisances: usize,
     how: &Fitting,
+    finer: impl Fn(P) -> P,
 ) -> Result<(P, Fit), Failure> {
+    let mut fit = best_of_starts(&problem, nuisances, how)?;
     for _ in 0..MOST_FINER {
-        let fit = best_of_starts(&problem, nuisances, how)?;
-        if fit.ending.converged() {
-            return Ok((problem, fit));
+        if !fit.ending.converged() {
+            problem = finer(problem);
+            fit = best_of_starts(&problem, nuisances, how)?;
         }
-        let accuracy = 0.1 * problem.accuracy();
-        problem = problem.computed_to(accuracy);
     }
-    let fit = best_of_starts(&problem, nuisances, how)?;
     Ok((problem, fit))
 }
 
-/// A problem whose curves can be computed more accurately.
-trait Modelled: Problem {
-    /// The model's accuracy.
-    fn accuracy(&self) -> f64;
-    /// The same problem at another accuracy.
-    fn computed_to(self, accuracy: f64) -> Self;
-}
-
-impl Modelled for CurveProblem {
-    fn accuracy(&self) -> f64 {
-        self.model().accuracy
-    }
-
-    fn computed_to(self, accuracy: f64) -> Self {
-        self.with_accuracy(accuracy)
-    }
-}
-
-impl Modelled for PulseProblem {
-    fn accuracy(&self) -> f64 {
-        self.model.accuracy
-    }
-
-    fn computed_to(self, accuracy: f64) -> Self {
-        self.with_accuracy(accuracy)
-    }
+/// The same curves, ten times as accurate.
+fn finer(problem: CurveProblem) -> CurveProblem {
+    let accuracy = 0.1 * problem.model().accuracy;
+    problem.with_accuracy(accuracy)
 }
 
 /// How a fit was asked for.
@@ -321,7 +311,7 @@ pub fn fit_tables(pairs: &[(Data, Experiment)], options: &Arguments) -> Result<F
 /// What is in the way of a fit.
 pub fn fit_result(problem: CurveProblem, arguments: &Arguments) -> Result<FitResult, Failure> {
     validation::of_table(arguments)?;
-    let (problem, fit) = best_fit(problem, 0, &asked(arguments))?;
+    let (problem, fit) = best_fit(problem, 0, &asked(arguments), finer)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more(&problem, (&fit, &covariance), arguments)?;
     let found = concluded(&problem, &problem, (fit, covariance, more), arguments)?;
@@ -356,18 +346,9 @@ fn concluded(
     arguments: &Arguments,
 ) -> Result<(Inferred, Option<AlternativeModels>), Failure> {
     let label = |at: usize| problem.residual_label(at);
-    let identifiability = Identifiability::new(problem.parameters(), &fit, label);
-    let limits = limits::limits(computed, (&fit, &covariance), &identifiability, &more)?;
-    let alternatives = alternatives::alternatives((problem, computed), &fit, arguments)?;
-    let inferred = Inferred {
-        parameters: problem.parameters().to_vec(),
-        goodness: Goodness::new(problem, &fit),
-        identifiability,
-        more,
-        limits,
-        covariance,
-        fit,
-    };
+    let goodness = Goodness::new(problem, &fit);
+    let inferred = Inferred::new(computed, (fit, covariance, more), goodness, label)?;
+    let alternatives = alternatives::alternatives((problem, computed), &inferred.fit, arguments)?;
     Ok((inferred, alternatives))
 }
 

@@ -1,15 +1,13 @@
 //! Whole pulses of recordings to parameters.
 
-use super::{Curves, Inferred, asked, best_fit, inferred, joined, limits, more, unasked};
+use super::{Curves, Inferred, asked, best_fit, inferred, joined, more, unasked};
+use crate::csv::{self, columns, view};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
 use crate::measure::{files, list};
 use crate::options::{Filter, FitOptions as Arguments};
-use crate::table::cell;
 use hertzchain_experiment::{Amplifier as Numbers, Experiment};
-use hertzchain_infer::{
-    Covariance, Goodness, Identifiability, Model, Problem, PulseProblem, Pulses, Respond,
-};
+use hertzchain_infer::{Covariance, Goodness, Model, Problem, PulseProblem, Pulses, Respond};
 use hertzchain_measure::ShotList;
 use hertzchain_measure::records::{ReadOptions, Record, read};
 use hertzchain_measure::signal::Estimate;
@@ -172,22 +170,17 @@ pub fn fit_result(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, F
     refused.extend(problem.left_out.iter().cloned());
     let problem = inference::pulses(problem, &arguments.freed)?;
     let nuisances = problem.nuisance_count();
-    let (problem, fit) = best_fit(problem, nuisances, &asked(arguments))?;
-    let parameters = problem.parameters();
-    let covariance = Covariance::new(parameters, &fit);
-    let label = |at: usize| problem.residual_label(at);
+    let finer = |problem: PulseProblem| {
+        let accuracy = 0.1 * problem.model.accuracy;
+        problem.with_accuracy(accuracy)
+    };
+    let (problem, fit) = best_fit(problem, nuisances, &asked(arguments), finer)?;
+    let covariance = Covariance::new(problem.parameters(), &fit);
     let how = Curves::Computed(None);
     let more = more::more_of(&problem, &problem, (&fit, &covariance), how, arguments)?;
-    let identifiability = Identifiability::new(parameters, &fit, label);
-    let found = Inferred {
-        parameters: parameters.to_vec(),
-        limits: limits::limits(&problem, (&fit, &covariance), &identifiability, &more)?,
-        identifiability,
-        goodness: Goodness::with_nuisances(problem.nuisance_count(), &problem, &fit),
-        more,
-        covariance,
-        fit,
-    };
+    let goodness = Goodness::with_nuisances(problem.nuisance_count(), &problem, &fit);
+    let label = |at: usize| problem.residual_label(at);
+    let found = Inferred::new(&problem, (fit, covariance, more), goodness, label)?;
     Ok(Pulsed { problem, inferred: found, refused })
 }
 
@@ -270,15 +263,8 @@ pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
 
 /// One line a mean of samples.
 pub(crate) fn pulses_csv(shown: &[Shown<'_>]) -> String {
-    let mut text = "source,channel,time_s,measured_V,error_V,fitted_V\n".to_owned();
-    for Shown { record, channel, columns: [times, measured, model] } in shown {
-        let source = record.source.replace('"', "\"\"");
-        for (at, time) in times.iter().enumerate() {
-            let cells = [*time, measured[at], record.sigma_v[*channel], model[at]].map(cell);
-            text += &format!("\"{source}\",{},{}\n", channel + 1, cells.join(","));
-        }
-    }
-    text
+    let titles = "source,channel,time_s,measured_V=measured_v,error_V=error_v,fitted_V=fitted_v";
+    view(csv::list(&rows_json(shown)), &columns(titles))
 }
 
 /// Every mean of samples beside the fitted one.

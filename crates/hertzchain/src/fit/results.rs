@@ -1,11 +1,11 @@
 //! A fit as JSON, in SI.
 
-use super::alternatives::{AlternativeModel, AlternativeModels};
+use super::alternatives::{AlternativeModel, AlternativeModels, Unfitted};
 use super::more::{Curves, More};
 use super::{FitResult, Inferred, Limit, TableFit};
 use crate::inference::{assumed, held_loads, references_json, unit_changes, widened};
 use crate::options::FitOptions as Arguments;
-use hertzchain_infer::{Advice, Comparison, End, Observable, Parameter, Prior, Profile, Prospect};
+use hertzchain_infer::{Advice, End, Observable, Parameter, Prior, Profile, Prospect};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
@@ -226,33 +226,40 @@ fn posterior(fit_result: &Inferred) -> Value {
 }
 
 fn comparison(alternatives: &AlternativeModels) -> Value {
+    let found = alternatives.comparison.as_ref();
     json!({
-        "models": alternatives.comparison.as_ref().map(|found| compared(alternatives, found)),
-        "favoured": (alternatives.comparison.as_ref())
-            .and_then(|found| found.favoured).map(|at| alternatives.all[at].name.clone()),
-        "sentence": alternatives.comparison.as_ref().map(|found| found.sentence.clone()),
-        "without_minimum": alternatives.lost.iter().map(|lost| json!({
-            "model": lost.name, "chi_square": lost.chi_square, "why": lost.why,
-        })).collect::<Value>(),
+        "models": found.map(|_| models(alternatives)),
+        "favoured": found.and_then(|found| found.favoured).map(|at| &alternatives.all[at].name),
+        "sentence": found.map(|found| &found.sentence),
+        "without_minimum": lost(alternatives),
     })
 }
 
-fn compared(alternatives: &AlternativeModels, comparison: &Comparison) -> Value {
+/// Models that found no minimum.
+pub(super) fn lost(alternatives: &AlternativeModels) -> Vec<Value> {
+    let one = |lost: &Unfitted| json!({ "model": lost.name, "chi_square": lost.chi_square, "why": lost.why });
+    alternatives.lost.iter().map(one).collect()
+}
+
+/// Models, with what was found where there are several.
+pub(super) fn models(alternatives: &AlternativeModels) -> Vec<Value> {
     let finite = |x: f64| x.is_finite().then_some(x);
     let one = |(at, alternative): (usize, &AlternativeModel)| {
-        let criteria = &comparison.criteria[at];
+        let found = alternatives.comparison.as_ref();
+        let criteria = found.map(|found| &found.criteria[at]);
+        let chi_square = criteria.and_then(|criteria| criteria.chi_square);
         json!({
             "model": alternative.name,
             "point": alternative.fit.point,
             "settings_left_out": alternative.without,
             "kept": alternative.kept,
             "chi_square": alternative.fit.chi_square(),
-            "freedom": criteria.chi_square.map(|found| found.freedom),
-            "probability": criteria.chi_square.map(|found| found.probability),
-            "aic": criteria.aic,
-            "aicc": finite(criteria.aicc),
-            "bic": criteria.bic,
-            "weight": comparison.weights[at],
+            "freedom": chi_square.map(|found| found.freedom),
+            "probability": chi_square.map(|found| found.probability),
+            "aic": criteria.map(|criteria| criteria.aic),
+            "aicc": criteria.and_then(|criteria| finite(criteria.aicc)),
+            "bic": criteria.map(|criteria| criteria.bic),
+            "weight": found.map(|found| found.weights[at]),
             "cross_validation": alternative.foretells.as_ref().map(|found| json!({
                 "mean": found.mean, "error": found.error,
             })),

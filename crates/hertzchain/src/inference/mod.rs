@@ -109,7 +109,7 @@ pub fn parsed(
 ) -> Result<Data, Failure> {
     let selection = Selection {
         case,
-        observables: measured.observables.iter().map(|what| of(*what)).collect(),
+        observables: measured.observables.iter().map(|what| (*what).into()).collect(),
         defaults: Defaults {
             speed_m_s: measured.speed_error.map(|error| error.0),
             time_s: measured.tof_error.map(|error| error.0),
@@ -190,7 +190,7 @@ fn not_there(data: &Data, measured: &Measured) -> Option<String> {
     if measured.observables == [What::Incident, What::Reflected] {
         return None;
     }
-    let wanted = measured.observables.iter().map(|what| of(*what));
+    let wanted = measured.observables.iter().map(|what| Observable::from(*what));
     let missing = wanted.filter(|of| !data.has(*of));
     let missing: Vec<String> = missing.map(|of| format!("`{}`", of.column())).collect();
     (!missing.is_empty()).then(|| {
@@ -228,15 +228,6 @@ fn listed(lines: &[u64]) -> String {
 
 /// Lines that a warning names.
 const LISTED: usize = 12;
-
-fn of(what: What) -> Observable {
-    match what {
-        What::Incident => Observable::Incident,
-        What::Reflected => Observable::Reflected,
-        What::WallRatio => Observable::WallOverPassing,
-        What::ReturningRatio => Observable::ReturningOverPassing,
-    }
-}
 
 /// A model's experiment, in the case of this name if it has one.
 pub(crate) fn opened(

@@ -8,11 +8,9 @@ pub use results::{json, write_json};
 pub(crate) use results::{law, row, shot};
 
 use crate::failure::Failure;
-use crate::options::CurveOptions;
-use crate::options::Filter;
-use crate::options::Input;
 use crate::options::{
-    Corner, MeasureOptions as Arguments, MethodName, PickOptions as Picking, RowsAre, Way,
+    Corner, CurveOptions, Filter, Input, MeasureOptions as Arguments, MethodName,
+    PickOptions as Picking,
 };
 use crate::{inference, input};
 use hertzchain_experiment::{self as experiment, Experiment};
@@ -23,7 +21,7 @@ use hertzchain_measure::signal::{
     Bandwidth, FindOptions, LowPass, Method, Polarity, SensorCalibration, Shape, SignalOptions,
 };
 use hertzchain_measure::{
-    Curves, Cut, Grouping, Level, Measurement, Note, Options, Shot, ShotList, speeds_csv,
+    Curves, Cut, Grouping, Level, Measurement, Note, Options, Shot, ShotList, Watch, speeds_csv,
 };
 use std::f64::consts::TAU;
 use std::fs;
@@ -122,6 +120,14 @@ pub struct MeasureResult {
 }
 
 impl MeasureResult {
+    /// Of shots, if the options suit them.
+    pub(crate) fn new(shots: Measurement, options: &Arguments) -> Result<Self, Failure> {
+        suits(&shots)?;
+        let curves = Curves::of(&shots.shots, &grouping(options));
+        inference::wanted()?;
+        Ok(Self { shots, curves })
+    }
+
     /// Returns the curve of a case as a fit takes it; `""` is the case of shots without one.
     ///
     /// # Errors
@@ -147,12 +153,24 @@ impl MeasureResult {
 /// # Errors
 /// Files and options that can't be used.
 pub fn measure(records: &[PathBuf], options: &Arguments) -> Result<MeasureResult, Failure> {
+    measure_watched(records, options, &self::options(options)?, &())
+}
+
+/// The same as `how` says, watched on the way.
+///
+/// # Errors
+/// Files that can't be used; that it was broken off.
+pub fn measure_watched(
+    records: &[PathBuf],
+    options: &Arguments,
+    how: &Options,
+    watch: &dyn Watch,
+) -> Result<MeasureResult, Failure> {
     let (files, notes) = files(records, options.shots.as_deref())?;
-    let mut shots = hertzchain_measure::measure(&files, &self::options(options)?, &());
+    let mut shots = hertzchain_measure::measure(&files, how, watch);
     shots.notes.splice(0..0, notes);
-    suits(&shots)?;
-    let curves = Curves::of(&shots.shots, &grouping(options));
-    Ok(MeasureResult { shots, curves })
+    inference::wanted()?;
+    MeasureResult::new(shots, options)
 }
 
 /// How recordings are read and measured.
@@ -182,13 +200,7 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
                 (Some(samples), None) => Parts::Shots(samples.0),
                 _ => Parts::Whole,
             },
-            rows: match reading.rows {
-                None => Rows::Auto,
-                Some(RowsAre::Shots) => Rows::Shots,
-                Some(RowsAre::Channels) => Rows::Channels,
-                Some(RowsAre::Times) => Rows::Times,
-                Some(RowsAre::Moments) => Rows::Moments,
-            },
+            rows: reading.rows.map_or(Rows::Auto, Into::into),
         },
         cutting: match (reading.level, reading.whole) {
             (Some(volts), _) => Cut::Level(Level {
@@ -250,8 +262,8 @@ fn measuring(
     let of_rig = || Some((rig?.beads(), rig?.sensor_bead()));
     Ok(SignalOptions {
         find: FindOptions {
-            polarity: polarity(picking.polarity),
-            wall_polarity: polarity(picking.wall_polarity),
+            polarity: picking.polarity.map_or(Polarity::Auto, Into::into),
+            wall_polarity: picking.wall_polarity.map_or(Polarity::Auto, Into::into),
             beads: beads.or_else(of_rig),
             ..FindOptions::default()
         },
@@ -307,14 +319,6 @@ fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandw
     Ok(Some(Bandwidth { corner_hz, order }))
 }
 
-fn polarity(way: Option<Way>) -> Polarity {
-    match way {
-        None => Polarity::Auto,
-        Some(Way::Positive) => Polarity::Positive,
-        Some(Way::Negative) => Polarity::Negative,
-    }
-}
-
 fn method(picking: &Picking) -> Method {
     match picking.method {
         MethodName::Local => Method::default(),
@@ -327,7 +331,7 @@ fn method(picking: &Picking) -> Method {
 }
 
 /// How shots become curves.
-pub fn grouping(arguments: &Arguments) -> Grouping {
+pub(crate) fn grouping(arguments: &Arguments) -> Grouping {
     Grouping {
         gap_m_s: arguments.speed_gap.0,
         reference: arguments.reference.clone(),
@@ -335,11 +339,9 @@ pub fn grouping(arguments: &Arguments) -> Grouping {
     }
 }
 
-/// Whether the options suit the recordings; one that does not is reported once, not with every shot.
-///
-/// # Errors
-/// An option that its records do not take, as a low-pass above half their sampling rate.
-pub fn suits(measured: &Measurement) -> Result<(), Failure> {
+/// Refuses an option that no record takes, as a low-pass above half their sampling rate: it is
+/// reported once, not with every shot.
+fn suits(measured: &Measurement) -> Result<(), Failure> {
     let unsuited = |shot: &&Shot| matches!(shot.flight, Err(MeasureError::Option(..)));
     let first = measured.shots.first();
     let error = first.and_then(|shot| Some((shot, shot.flight.as_ref().err()?)));

@@ -5,7 +5,8 @@ use super::{
     Accuracy, Against, Also, Assignment, Cost, ErrorShots, Few, Frequency, Positive, Preload,
     Speed, Threads, Time,
 };
-use clap::{Args, ValueEnum};
+use clap::Args;
+use hertzchain_infer::Observable;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -45,19 +46,23 @@ pub struct CurveOptions {
     pub error_shots: Option<ErrorShots>,
 }
 
-/// Observables by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum What {
-    /// Incident times of flight
-    Incident,
-    /// Reflected times of flight
-    Reflected,
-    /// Peaks at the wall over passing ones; needs the gains of both sensors to be alike, or
-    /// wall_gain to be free
-    WallRatio,
-    /// Returning peaks over passing ones, both of one sensor
-    ReturningRatio,
+names! {
+    /// Observables by name.
+    What for Observable {
+        /// Incident times of flight
+        Incident,
+        /// Reflected times of flight
+        Reflected,
+        /// Peaks at the wall over passing ones; needs the gains of both sensors to be alike, or
+        /// wall_gain to be free
+        #[value(name = "wall-ratio")]
+        #[serde(rename = "wall-ratio")]
+        WallOverPassing,
+        /// Returning peaks over passing ones, both of one sensor
+        #[value(name = "returning-ratio")]
+        #[serde(rename = "returning-ratio")]
+        ReturningOverPassing,
+    }
 }
 
 /// A model with free numbers.
@@ -237,24 +242,24 @@ impl RecordOptions {
     }
 }
 
-/// Low-passes by order and kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Filter {
-    /// One pole
-    First,
-    /// Butterworth of second order
-    Butterworth2,
-    /// Butterworth of third order
-    Butterworth3,
-    /// Butterworth of fourth order
-    Butterworth4,
-    /// Bessel of second order
-    Bessel2,
-    /// Bessel of third order
-    Bessel3,
-    /// Bessel of fourth order
-    Bessel4,
+names! {
+    /// Low-passes by order and kind.
+    Filter {
+        /// One pole
+        First,
+        /// Butterworth of second order
+        Butterworth2,
+        /// Butterworth of third order
+        Butterworth3,
+        /// Butterworth of fourth order
+        Butterworth4,
+        /// Bessel of second order
+        Bessel2,
+        /// Bessel of third order
+        Bessel3,
+        /// Bessel of fourth order
+        Bessel4,
+    }
 }
 
 impl Filter {
@@ -405,16 +410,16 @@ pub struct GaugeOptions {
     pub out: Option<PathBuf>,
 }
 
-/// Ways to determine uncertainty.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Method {
-    /// By the curvature at the best fit
-    Covariance,
-    /// By how the fit worsens as each parameter is moved and the others follow
-    Profile,
-    /// By sampling the posterior
-    Posterior,
+names! {
+    /// Ways to determine uncertainty.
+    Method {
+        /// By the curvature at the best fit
+        Covariance,
+        /// By how the fit worsens as each parameter is moved and the others follow
+        Profile,
+        /// By sampling the posterior
+        Posterior,
+    }
 }
 
 impl ModelOptions {

@@ -4,7 +4,9 @@ use super::values::texts;
 use super::{
     Corner, Count, Delay, Filter, Frequency, Sensitivity, Share, Speed, Time, TimeUnit, Voltage,
 };
-use clap::{Args, ValueEnum};
+use clap::Args;
+use hertzchain_measure::records::{Rows, SampleKind};
+use hertzchain_measure::signal::Polarity;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -81,18 +83,18 @@ pub struct LiveOptions {
     pub stop_after: Option<Time>,
 }
 
-/// Types of samples by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SampleType {
-    /// Whole numbers of 16 bits
-    I16,
-    /// Whole numbers of 32 bits
-    I32,
-    /// Floating-point numbers of 32 bits
-    F32,
-    /// Floating-point numbers of 64 bits
-    F64,
+names! {
+    /// Types of samples by name.
+    SampleType for SampleKind {
+        /// Whole numbers of 16 bits
+        I16,
+        /// Whole numbers of 32 bits
+        I32,
+        /// Floating-point numbers of 32 bits
+        F32,
+        /// Floating-point numbers of 64 bits
+        F64,
+    }
 }
 
 /// What files leave open.
@@ -172,40 +174,40 @@ pub struct PickOptions {
     pub skew: Option<Delay>,
 }
 
-/// Picking methods by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MethodName {
-    /// At the maximum of a bell of free skewness fitted about the peak
-    Local,
-    /// Where the rising flank passes a share of the height
-    Onset,
-    /// Where the passing pulse, as a template, correlates best
-    Correlation,
-    /// Where a bell of free height and width fits best
-    Shape,
+names! {
+    /// Picking methods by name.
+    MethodName {
+        /// At the maximum of a bell of free skewness fitted about the peak
+        Local,
+        /// Where the rising flank passes a share of the height
+        Onset,
+        /// Where the passing pulse, as a template, correlates best
+        Correlation,
+        /// Where a bell of free height and width fits best
+        Shape,
+    }
 }
 
-/// Directions by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Way {
-    /// Up
-    Positive,
-    /// Down
-    Negative,
+names! {
+    /// Directions by name.
+    Way for Polarity {
+        /// Up
+        Positive,
+        /// Down
+        Negative,
+    }
 }
 
-/// First axes by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RowsAre {
-    /// A row is a shot
-    Shots,
-    /// A row is a channel
-    Channels,
-    /// A row is a moment, a column a channel
-    Times,
-    /// A row is a moment, a column a shot
-    Moments,
+names! {
+    /// First axes by name.
+    RowsAre for Rows {
+        /// A row is a shot
+        Shots,
+        /// A row is a channel
+        Channels,
+        /// A row is a moment, a column a channel
+        Times,
+        /// A row is a moment, a column a shot
+        Moments,
+    }
 }

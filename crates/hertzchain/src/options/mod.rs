@@ -1,6 +1,26 @@
 //! Options of each verb: one struct of typed fields, from which command line, Python's keywords and the
 //! `options` of result files derive.
 
+/// Declares the names of an option's values, described for its help; after `for`, of the variants
+/// of another enum, which they become.
+macro_rules! names {
+    ($(#[$doc:meta])* $name:ident { $($(#[$what:meta])* $variant:ident,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum $name { $($(#[$what])* $variant,)* }
+    };
+    ($(#[$doc:meta])* $name:ident for $of:path { $($(#[$what:meta])* $variant:ident,)* }) => {
+        names!($(#[$doc])* $name { $($(#[$what])* $variant,)* });
+
+        impl From<$name> for $of {
+            fn from(name: $name) -> Self {
+                match name { $($name::$variant => Self::$variant,)* }
+            }
+        }
+    };
+}
+
 mod given;
 mod infer;
 mod measure;

@@ -3,7 +3,7 @@
 use super::given::{some_speed, some_time};
 use super::values::{shard, some_shard, speeds};
 use super::{Accuracy, Given, Threads};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use hertzchain_sim::Shard;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -50,35 +50,36 @@ pub struct SimulationOptions {
     pub check: bool,
 }
 
-/// Solvers by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Solver {
-    /// Embedded pair with adaptive steps that end at contact changes
-    Adaptive,
-    /// Classical Runge–Kutta with fixed steps
-    Rk4,
-    /// Velocity Verlet with fixed steps
-    Verlet,
+names! {
+    /// Solvers by name.
+    Solver for hertzchain_sim::Method {
+        /// Embedded pair with adaptive steps that end at contact changes
+        Adaptive,
+        /// Classical Runge–Kutta with fixed steps
+        Rk4,
+        /// Velocity Verlet with fixed steps
+        Verlet,
+    }
 }
 
-/// Picks by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Pick {
-    /// At its maximum
-    Peak,
-    /// At 10 % of the maximum on the rising flank
-    #[value(name = "flank-10")]
-    #[serde(rename = "flank-10")]
-    Flank10,
-    /// At 50 % of the maximum on the rising flank
-    #[value(name = "flank-50")]
-    #[serde(rename = "flank-50")]
-    Flank50,
-    /// By cross-correlation of the pulses
-    CrossCorrelation,
+names! {
+    /// Picks by name.
+    Pick for hertzchain_sim::Pick {
+        /// At its maximum
+        Peak,
+        /// At 10 % of the maximum on the rising flank
+        #[value(name = "flank-10")]
+        #[serde(rename = "flank-10")]
+        Flank10,
+        /// At 50 % of the maximum on the rising flank
+        #[value(name = "flank-50")]
+        #[serde(rename = "flank-50")]
+        Flank50,
+        /// By cross-correlation of the pulses
+        CrossCorrelation,
+    }
 }
+
 /// Options of `shot`.
 #[derive(Clone, Debug, Args, Serialize, Deserialize)]
 #[serde(default)]
@@ -118,18 +119,18 @@ pub struct ShotOptions {
     pub animate: bool,
 }
 
-/// Ways to control the error of many shots
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ErrorControl {
-    /// Every shot is compared with two more, with longer steps
-    PerShot,
-    /// Calibration shots, computed much more tightly, choose the cheapest steps for all shots, and
-    /// each estimates its own error: ten times as fast. As per shot below 160 shots, and of rows that are not
-    /// uniform
-    Calibrated,
-    /// By the step for the accuracy asked alone: every shot once, without a bound on its error
-    None,
+names! {
+    /// Ways to control the error of many shots
+    ErrorControl for hertzchain_sim::ErrorControl {
+        /// Every shot is compared with two more, with longer steps
+        PerShot,
+        /// Calibration shots, computed much more tightly, choose the cheapest steps for all shots, and
+        /// each estimates its own error: ten times as fast. As per shot below 160 shots, and of rows that are not
+        /// uniform
+        Calibrated,
+        /// By the step for the accuracy asked alone: every shot once, without a bound on its error
+        None,
+    }
 }
 
 impl ShotOptions {

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use hertzchain_experiment::units::parse_in;
-use hertzchain_infer::FEWEST_SHOTS;
+use hertzchain_infer::{FEWEST_SHOTS, Kind};
 use hertzchain_sim::Shard;
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -281,20 +281,20 @@ pub struct Cost {
     pub value: f64,
 }
 
-/// Ways to measure, by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum WayKind {
-    /// Incident times alone
-    Incident,
-    /// Reflected times too
-    Reflected,
-    /// And the ratio of reflected to incident peaks
-    Ratio,
-    /// A sensor in another bead
-    Sensor,
-    /// A push on bead 1
-    Preload,
+names! {
+    /// Ways to measure, by name.
+    WayKind for Kind {
+        /// Incident times alone
+        Incident,
+        /// Reflected times too
+        Reflected,
+        /// And the ratio of reflected to incident peaks
+        Ratio,
+        /// A sensor in another bead
+        Sensor,
+        /// A push on bead 1
+        Preload,
+    }
 }
 
 impl FromStr for Cost {

@@ -2,12 +2,12 @@
 //! for ours.
 
 use crate::failure;
-pub(crate) use crate::failure::{Failure, of_speed};
+pub(crate) use crate::failure::{Failure, why};
 use crate::inference::{assumed, held_loads, unit_changes};
 use crate::input::option;
 use crate::options::Given;
 use crate::options::{Assignment, CurveOptions as Measured};
-use crate::program::print::note;
+use crate::program::print::warn;
 use hertzchain_experiment::Warning;
 use hertzchain_infer::{Data, Model};
 use hertzchain_measure::records::without_controls;
@@ -44,16 +44,12 @@ pub(crate) fn print_option_warnings(option: &str, warnings: &[Warning]) {
 
 /// What is assumed of data that do not say all.
 pub(crate) fn print_assumed(data: &Data, measured: &Measured) {
-    if let Some(assumed) = assumed(data, measured) {
-        note(&format!("warning: {assumed}"));
-    }
+    warn(assumed(data, measured));
 }
 
 /// Numbers that are kept while their unit changes, and loads that the model does not have.
 pub(crate) fn print_stored(model: &Model, sets: &[Assignment]) {
-    for kept in unit_changes(model, sets).into_iter().chain(held_loads(model)) {
-        note(&format!("warning: {kept}"));
-    }
+    warn(unit_changes(model, sets).into_iter().chain(held_loads(model)));
 }
 
 /// What is odd about an experiment at the speed that may have been given.

@@ -1,6 +1,7 @@
 //! An output folder whose files are there whole or not at all.
 
 use crate::program::failure::Failure;
+use crate::program::print;
 use hertzchain_figures::Figure;
 use hertzchain_measure::records::Files;
 use std::io::{self, Write};
@@ -78,6 +79,17 @@ impl Folder {
     /// Where it is.
     pub(crate) fn path(&self) -> &Path {
         self.0.folder()
+    }
+
+    /// The folder that an option asks for, if it asks for one.
+    pub(crate) fn asked(path: Option<&Path>) -> Result<Option<Self>, Failure> {
+        path.map(Self::open).transpose()
+    }
+
+    /// Gives all files their names, and reports them.
+    pub(crate) fn finish_and_report(self) -> Result<(), Failure> {
+        print::written(&self.finish()?);
+        Ok(())
     }
 
     /// Names of the files.

@@ -45,7 +45,7 @@ fn end_on_interrupt() {
         std::process::exit(INTERRUPTED);
     });
     if let Err(error) = installed {
-        print::note(&format!("warning: Ctrl-C ends without a message: {error}"));
+        print::warn([format!("Ctrl-C ends without a message: {error}")]);
     }
 }
 

@@ -1,5 +1,6 @@
 //! How far long work is, on standard error.
 
+use crate::options::Threads;
 use crate::program::failure::Failure;
 use crate::program::print;
 use hertzchain_measure::Watch;
@@ -81,11 +82,11 @@ impl Watch for Counter {
 /// Runs work with so many threads, and prints what it notes of its progress, whether or not
 /// standard error is a terminal.
 pub(crate) fn with_notes<T: Send>(
-    threads: Option<usize>,
-    work: impl FnOnce() -> T + Send,
+    threads: Option<Threads>,
+    work: impl FnOnce() -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
     let stop = Stop::default();
-    let pool = stop.pool(threads.unwrap_or(0));
+    let pool = stop.pool(threads.map_or(0, |threads| threads.0));
     let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
     let (working, ended) = channel::<()>();
     std::thread::scope(|scope| {
@@ -106,7 +107,7 @@ pub(crate) fn with_notes<T: Send>(
         });
         let found = pool.install(work);
         drop(working);
-        Ok(found)
+        found
     })
 }
 

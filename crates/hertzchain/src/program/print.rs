@@ -1,7 +1,9 @@
 //! Standard output, which may be a closed pipe.
 
 use crate::program::failure::Failure;
+use crate::program::words::lines;
 use hertzchain_measure::records::without_controls;
+use std::fmt::Display;
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
 
 /// Prints a text and a line end if it has none.
@@ -84,6 +86,21 @@ pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
     print(&format!("{value:#}"))
 }
 
+/// Prints a verb's result as JSON or for people, and before all else that a model which was not named
+/// was assumed.
+pub(crate) fn result(
+    json: bool,
+    all: &mut serde_json::Value,
+    assumed: Option<String>,
+    text: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    all["assumed_model"] = assumed.clone().into();
+    match json {
+        true => print_json(all),
+        false => print(&(lines(assumed) + &text())),
+    }
+}
+
 /// A heading, bold on a terminal.
 pub(crate) fn heading(text: &str) -> String {
     match bold() {
@@ -114,6 +131,11 @@ fn shown(text: &str, bold: bool) -> String {
 /// Reports which files were written, one path a line.
 pub(crate) fn written(files: &str) {
     eprint!("Written:\n{}", without_controls(files));
+}
+
+/// Writes warnings to standard error.
+pub(crate) fn warn<T: Display>(warnings: impl IntoIterator<Item = T>) {
+    warnings.into_iter().for_each(|text| note(&format!("warning: {text}")));
 }
 
 /// Writes a line to standard error.

@@ -100,8 +100,8 @@ pub(crate) fn doubt(ending: &Ending) -> Option<String> {
 }
 
 /// Sentences, one a line.
-pub(crate) fn lines(sentences: Vec<String>) -> String {
-    sentences.iter().map(|one| format!("{one}\n")).collect()
+pub(crate) fn lines(sentences: impl IntoIterator<Item = String>) -> String {
+    sentences.into_iter().map(|one| format!("{one}\n")).collect()
 }
 
 #[cfg(test)]

@@ -19,9 +19,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let experiment = input::open(&arguments.input)?;
     let prepared = PreparedCampaign::new(&experiment, arguments)?;
-    for warning in &prepared.warnings {
-        print::note(&format!("warning: {warning}"));
-    }
+    print::warn(&prepared.warnings);
     let counter = Counter::new("shots", 0);
     let begun = Instant::now();
     let done = prepared.run(&|Progress { fired, shots }| match fired {
@@ -36,12 +34,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Series that can't be computed are reported, after all the others were.
 fn evaluate(done: &Done) -> Result<(), Failure> {
-    for why in &done.failed {
-        print::note(&format!("warning: {why}"));
-    }
-    if let Some(warning) = untriggered(done) {
-        print::note(&format!("warning: {warning}"));
-    }
+    print::warn(&done.failed);
+    print::warn(untriggered(done));
     match done.failed.len() {
         0 => Ok(()),
         n => Err(Failure::User(format!(

@@ -26,24 +26,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print_stored(&model, &arguments.modelled.set);
     let problem = inference::problem(model, data, &arguments.freed)?;
     let targets = design::targets(&problem, arguments)?;
-    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let threads = arguments.modelled.threads.map(|threads| threads.0);
-    let run_design =
-        with_notes(threads, || design::run_design(&problem, &targets, &speeds, arguments))??;
+    let folder = Folder::asked(arguments.out.as_deref())?;
+    let run_design = with_notes(arguments.modelled.threads, || {
+        design::run_design(&problem, &targets, &speeds, arguments)
+    })?;
     let mut all = design::json(&problem, &run_design);
     all["options"] = crate::options::recorded(arguments);
     let assumed = inference::assumed_model(&arguments.modelled);
-    all["assumed_model"] = assumed.clone().into();
-    let assumed = lines(assumed.into_iter().collect());
-    match arguments.json {
-        true => print::print_json(&all)?,
-        false => print::print(&(assumed + &text(&problem, &run_design)))?,
-    }
+    print::result(arguments.json, &mut all, assumed, || text(&problem, &run_design))?;
     folder.map_or(Ok(()), |mut folder| {
         folder.write("design.json", format!("{all:#}\n").as_bytes())?;
-        folder.tables(&design::tables(&run_design))?;
-        print::written(&folder.finish()?);
-        Ok(())
+        folder.tables(&design::tables(&all))?;
+        folder.finish_and_report()
     })
 }
 

@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Explore) -> Result<(), Failure> {
         if !arguments.no_browser
             && let Err(error) = hertzchain_explore::open(address)
         {
-            print::note(&format!("warning: no browser opened ({error}): open this address"));
+            print::warn([format!("no browser opened ({error}): open this address")]);
         }
     };
     serve(settings, Arc::new(Library), opened).map_err(|error| Failure::User(error.to_string()))

@@ -12,7 +12,6 @@ use crate::program::failure::{Failure, print_assumed, print_stored};
 use crate::program::folder::Folder;
 use crate::program::notes::with_notes;
 use crate::program::print;
-use crate::program::words::lines;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{CurveProblem, Data, Problem, Surrogate};
 use std::path::Path;
@@ -29,11 +28,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print_stored(&curve.model, &arguments.modelled.set);
     }
     pace(&problem, arguments);
-    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let threads = arguments.modelled.threads.map(|threads| threads.0);
-    let fit_result = with_notes(threads, || fit::fit_result(problem, arguments))??;
+    let folder = Folder::asked(arguments.out.as_deref())?;
+    let fit_result =
+        with_notes(arguments.modelled.threads, || fit::fit_result(problem, arguments))?;
     let mut all = fit::json(&fit_result, arguments);
-    show(arguments, &mut all, || report::text(&fit_result, arguments))?;
+    let assumed = inference::assumed_model(&arguments.modelled);
+    let text = || report::text(&fit_result, arguments);
+    print::result(arguments.json, &mut all, assumed, text)?;
     folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
 }
 
@@ -51,30 +52,16 @@ fn pairs(table: &Path, arguments: &Arguments) -> Result<Vec<(Data, Experiment)>,
     Ok(all)
 }
 
-/// Prints a result, and before all else that a model which was not named was assumed.
-fn show(
-    arguments: &Arguments,
-    all: &mut serde_json::Value,
-    text: impl FnOnce() -> String,
-) -> Result<(), Failure> {
-    let assumed = inference::assumed_model(&arguments.modelled);
-    all["assumed_model"] = assumed.clone().into();
-    match arguments.json {
-        true => print::print_json(all),
-        false => print::print(&(lines(assumed.into_iter().collect()) + &text())),
-    }
-}
-
 /// Warns of a posterior that takes its time.
 fn pace(problem: &CurveProblem, arguments: &Arguments) {
     let count = problem.parameters().len();
     let most = Surrogate::MOST_PARAMETERS;
     if arguments.method == Method::Posterior && !arguments.direct && count > most {
-        print::note(&format!(
-            "warning: {count} parameters are free, and curves are interpolated for up to {most}: \
+        print::warn([format!(
+            "{count} parameters are free, and curves are interpolated for up to {most}: \
              every curve of the posterior is computed, a hundred times as slowly; fix some \
              parameters, or use --method profile"
-        ));
+        )]);
     }
 }
 
@@ -87,17 +74,13 @@ fn write(
         let name = if at == 0 { "fit".to_owned() } else { format!("fit-{}", at + 1) };
         folder.figure(&name, &pictures::fit(table, &fit_result.inferred))?;
     }
-    let tables = fit::tables(fit_result);
-    write_inferred(&mut folder, &fit_result.inferred, (all, &tables))?;
-    let out = folder.path().to_owned();
-    print::written(&folder.finish()?);
-    fit::finished(&out);
-    Ok(())
+    let tables = fit::tables(fit_result, all);
+    write_inferred(folder, &fit_result.inferred, (all, &tables))
 }
 
-/// Files that any fit has.
+/// Files that any fit has, the last ones.
 fn write_inferred(
-    folder: &mut Folder,
+    mut folder: Folder,
     fit_result: &Inferred,
     (all, tables): (&serde_json::Value, &[(&'static str, String)]),
 ) -> Result<(), Failure> {
@@ -116,5 +99,8 @@ fn write_inferred(
             }
         }
     }
+    let out = folder.path().to_owned();
+    folder.finish_and_report()?;
+    fit::finished(&out);
     Ok(())
 }

@@ -9,7 +9,6 @@ use crate::program::failure::{Failure, print_assumed};
 use crate::program::folder::Folder;
 use crate::program::notes::with_notes;
 use crate::program::print;
-use crate::program::words::lines;
 use std::path::Path;
 
 /// Runs the verb.
@@ -27,18 +26,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.model.is_some() || arguments.preset.is_some(),
         arguments.dry_model.is_some() || arguments.dry_preset.is_some(),
     );
-    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let threads = arguments.threads.map(|threads| threads.0);
+    let folder = Folder::asked(arguments.out.as_deref())?;
     let chains = [&wet_model, &dry_model];
-    let run_gauge = with_notes(threads, || gauge::gauge([wet, dry], chains, oils, arguments))??;
+    let run_gauge =
+        with_notes(arguments.threads, || gauge::gauge([wet, dry], chains, oils, arguments))?;
     let mut all = gauge::json(&run_gauge);
     all["options"] = crate::options::recorded(arguments);
-    all["assumed_model"] = assumed.clone().into();
-    let assumed = lines(assumed.into_iter().collect());
-    match arguments.json {
-        true => print::print_json(&all)?,
-        false => print::print(&(assumed + &report::text(&run_gauge)))?,
-    }
+    print::result(arguments.json, &mut all, assumed, || report::text(&run_gauge))?;
     folder.map_or(Ok(()), |folder| write(folder, &run_gauge, &all))
 }
 
@@ -48,10 +42,9 @@ fn write(
     all: &serde_json::Value,
 ) -> Result<(), Failure> {
     folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
-    folder.tables(&gauge::tables(run_gauge))?;
+    folder.tables(&gauge::tables(run_gauge, all))?;
     if run_gauge.rows.iter().any(|row| row.contact.is_ok()) {
         folder.figure("contacts", &pictures::contacts(run_gauge))?;
     }
-    print::written(&folder.finish()?);
-    Ok(())
+    folder.finish_and_report()
 }

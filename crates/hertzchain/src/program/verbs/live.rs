@@ -5,13 +5,13 @@ use crate::live::LiveMeasurement;
 use crate::measure::{self, MeasureResult};
 use crate::options::{
     DesignOptions, LiveOptions, MeasureOptions, ModelOptions, ParameterOptions, ReadingOptions,
-    RowsAre, SampleType,
+    RowsAre,
 };
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
 use crate::program::{format, print};
 use crate::{design, inference};
-use hertzchain_measure::records::{SampleKind, StreamFormat, stream_pieces, write_npy};
+use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy};
 use hertzchain_measure::{Case, Level, MeasureError, Shot, SpeedRow, shots_at_level};
 use serde_json::{Value, json};
 use std::fs;
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
         let files = live.update()?;
         if live.list_error != list_error {
             list_error.clone_from(&live.list_error);
-            list_error.iter().for_each(|error| print::note(&format!("warning: {error}")));
+            print::warn(&list_error);
         }
         if !files.is_empty() {
             last = Instant::now();
@@ -117,7 +117,7 @@ impl Source {
         let format = StreamFormat {
             rate_hz: rate.0,
             channels: usize::from(arguments.channels),
-            kind: kind(arguments.samples),
+            kind: arguments.samples.into(),
         };
         let pieces = stream_pieces(name, reader, format);
         let into = folder.clone();
@@ -162,15 +162,6 @@ fn stored(folder: &Path) -> u64 {
         name.to_str()?.strip_prefix("shot-")?.strip_suffix(".npy")?.parse().ok()
     };
     entries.filter_map(number).max().unwrap_or(0)
-}
-
-fn kind(samples: SampleType) -> SampleKind {
-    match samples {
-        SampleType::I16 => SampleKind::I16,
-        SampleType::I32 => SampleKind::I32,
-        SampleType::F32 => SampleKind::F32,
-        SampleType::F64 => SampleKind::F64,
-    }
 }
 
 fn wrong(text: &str) -> Failure {

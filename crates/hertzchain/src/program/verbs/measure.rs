@@ -4,7 +4,7 @@ mod pictures;
 mod report;
 pub(super) mod summary;
 
-use crate::measure;
+use crate::measure::{self, MeasureResult};
 use crate::options::MeasureOptions as Arguments;
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
@@ -17,28 +17,24 @@ use hertzchain_measure::{
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (files, notes) = measure::files(&arguments.records, arguments.shots.as_deref())?;
     let most_flagged = if arguments.report.is_some() { report::MOST } else { 0 };
     let options = Options { most_flagged, ..measure::options(arguments)? };
-    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
+    let folder = Folder::asked(arguments.out.as_deref())?;
     let counter = Counter::new("records", 0);
-    let mut measured = hertzchain_measure::measure(&files, &options, &counter);
-    measured.notes.splice(0..0, notes);
+    let found = measure::measure_watched(&arguments.records, arguments, &options, &counter);
     counter.finish();
-    measure::suits(&measured)?;
-    let grouping = measure::grouping(arguments);
-    let curves = Curves::of(&measured.shots, &grouping);
+    let MeasureResult { shots: measured, curves } = found?;
     list_notes(&measured);
     note_low_pass(&measured, &options, arguments.picking.low_pass.map(|corner| corner.0));
     match arguments.json {
         true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
-        false => print::print(&summary::text(&measured, &curves, &grouping.reference))?,
+        false => print::print(&summary::text(&measured, &curves, &arguments.reference))?,
     }
     if let Some(path) = &arguments.report {
         report::write(path, &measured)?;
     }
     if let Some(folder) = folder {
-        write(folder, &measured, (&curves, &grouping.reference))?;
+        write(folder, &measured, (&curves, &arguments.reference))?;
     }
     measure::evaluate(&measured)
 }
@@ -97,8 +93,7 @@ fn write(
     if has_ratios(curves) {
         folder.figure("ratios", &pictures::ratios(curves, reference))?;
     }
-    print::written(&folder.finish()?);
-    Ok(())
+    folder.finish_and_report()
 }
 
 /// Every table, and everything as JSON.

@@ -4,7 +4,7 @@ mod report;
 mod traces;
 
 use crate::input;
-use crate::options::ShotOptions as Arguments;
+use crate::options::{ShotOptions as Arguments, Threads};
 use crate::program::failure::{self, Failure};
 use crate::program::folder::Folder;
 use crate::program::notes::with_notes;
@@ -25,12 +25,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let prepared = PreparedShot::new(&experiment, arguments)?;
     let folder = open_folder(arguments)?;
     announce(&prepared.plan);
-    let shot = with_notes(Some(1), || prepared.run())??;
+    let shot = with_notes(Some(Threads(1)), || prepared.run())?;
     failure::print_speed_warnings(arguments.speed.as_ref(), &shot.warnings);
     if arguments.json {
         print::print_json(&json(&shot)?)?;
     } else {
-        let assumed = lines(shot.assumed_model.clone().into_iter().collect());
+        let assumed = lines(shot.assumed_model.clone());
         print::print(&(assumed + &report::text(&experiment, &shot.plan, &shot)))?;
     }
     folder.map_or(Ok(()), |folder| traces::write(folder, arguments, &experiment, &shot))

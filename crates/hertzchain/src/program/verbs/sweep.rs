@@ -14,13 +14,13 @@ use crate::sweep::{self, SweepResult};
 use crate::{input, missing, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_paper::reproduce::ReproduceProgress;
-use hertzchain_sim::StudyError;
+use hertzchain_sim::{BatchShot, StudyError};
 
 /// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speeds = sweep::speeds(&experiment, arguments)?;
-    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
+    let folder = Folder::asked(arguments.out.as_deref())?;
     let counter = Counter::new("shots", speeds.len() as u64);
     let batch = sweep::batch(&experiment, speeds, arguments)?;
     if let Some(shard) = arguments.shard {
@@ -40,19 +40,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn report_failed(swept: &SweepResult, units: Units) -> Result<(), Failure> {
     let style = Style { digits: 16, units };
     let failed = swept.points.iter().filter_map(|point| Some((point, point.shot.as_ref().err()?)));
-    let of_speed = |error: &StudyError| match error {
-        StudyError::Mistakes(mistakes) => failure::of_speed(mistakes),
-        _ => None,
+    let line = |(point, error): (&BatchShot, &StudyError)| {
+        let speed = style.quantity(point.speed_m_s, "m/s");
+        format!("no shot at {speed}: {}", failure::why(error))
     };
-    let lines: Vec<String> = failed
-        .map(|(point, error)| {
-            let why = of_speed(error).unwrap_or_else(|| error.to_string());
-            format!("{}: {why}", style.quantity(point.speed_m_s, "m/s"))
-        })
-        .collect();
-    for line in &lines {
-        print::note(&format!("warning: no shot at {line}"));
-    }
+    let lines: Vec<String> = failed.map(line).collect();
+    print::warn(&lines);
     match lines.len() == swept.points.len() {
         true => Err(Failure::User("no speed gave a shot".into())),
         false => Ok(()),
@@ -110,9 +103,7 @@ fn print_warnings(experiment: &Experiment, swept: &SweepResult) {
     }
     match warned.count() {
         0 => {}
-        1 => print::note("warning: the same goes for another speed; --json has all warnings"),
-        n => print::note(&format!(
-            "warning: the same goes for {n} other speeds; --json has all warnings"
-        )),
+        1 => print::warn(["the same goes for another speed; --json has all warnings"]),
+        n => print::warn([format!("the same goes for {n} other speeds; --json has all warnings")]),
     }
 }

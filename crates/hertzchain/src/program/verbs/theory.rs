@@ -14,9 +14,7 @@ pub(crate) fn run(arguments: &Check) -> Result<(), Failure> {
     let assumed = input::assumed(&arguments.input);
     if arguments.json {
         // A list of groups has no place for it.
-        if let Some(assumed) = assumed {
-            print::note(&format!("warning: {assumed}"));
-        }
+        print::warn(assumed);
         return print::print_json(&json!(found.groups));
     }
     failure::print_speed_warnings(arguments.speed.as_ref(), &found.warnings);
@@ -24,5 +22,5 @@ pub(crate) fn run(arguments: &Check) -> Result<(), Failure> {
         true => "No closed theory fits this chain: no striker, no preload.".to_owned(),
         false => format::groups(&found.groups, experiment.units()),
     };
-    print::print(&(lines(assumed.into_iter().collect()) + &text))
+    print::print(&(lines(assumed) + &text))
 }

@@ -1,8 +1,8 @@
 //! Whole pulses of recordings to parameters.
 
-use super::{report, show, write_inferred};
+use super::{report, write_inferred};
 use crate::fit::pulses::{Pulsed, REPORTED, Shown, fit_result, json, pulses_csv, recorded, shown};
-use crate::fit::{finished, tables_of_any};
+use crate::fit::tables_of_any;
 use crate::inference;
 use crate::options::FitOptions as Arguments;
 use crate::program::failure::{Failure, print_stored};
@@ -18,12 +18,12 @@ use serde_json::Value;
 /// Runs the verb on recordings.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = recorded(arguments)?;
-    let folder = arguments.out.as_deref().map(Folder::open).transpose()?;
-    let threads = arguments.modelled.threads.map(|threads| threads.0);
-    let fit_result = with_notes(threads, || fit_result(recorded, arguments))??;
+    let folder = Folder::asked(arguments.out.as_deref())?;
+    let fit_result = with_notes(arguments.modelled.threads, || fit_result(recorded, arguments))?;
     print_stored(&fit_result.problem.model, &arguments.modelled.set);
     let mut all = json(&fit_result, arguments);
-    show(arguments, &mut all, || text(&fit_result, arguments))?;
+    let assumed = inference::assumed_model(&arguments.modelled);
+    print::result(arguments.json, &mut all, assumed, || text(&fit_result, arguments))?;
     folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
 }
 
@@ -69,12 +69,8 @@ fn write(mut folder: Folder, fit_result: &Pulsed, all: &Value) -> Result<(), Fai
     let shown = shown(fit_result)?;
     folder.write("pulses.csv", pulses_csv(&shown).as_bytes())?;
     folder.figure("pulses", &picture(&shown))?;
-    let tables = tables_of_any(&fit_result.inferred);
-    write_inferred(&mut folder, &fit_result.inferred, (all, &tables))?;
-    let out = folder.path().to_owned();
-    print::written(&folder.finish()?);
-    finished(&out);
-    Ok(())
+    let tables = tables_of_any(all, &fit_result.inferred.more);
+    write_inferred(folder, &fit_result.inferred, (all, &tables))
 }
 
 /// The slowest and the fastest record with the fit, residuals below each.

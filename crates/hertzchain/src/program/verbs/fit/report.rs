@@ -26,7 +26,7 @@ pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
     text += &described(&fit_result.inferred);
     text += &accuracy(fit_result);
     text += &lines(fit_result.unasked(arguments));
-    text += &lines(all.iter().filter_map(|table| widened(&table.curve.data)).collect());
+    text += &lines(all.iter().filter_map(|table| widened(&table.curve.data)));
     let advice = fit_result.advice.as_ref();
     text += &determined(&fit_result.inferred, &|| advice.map_or(Vec::new(), Advice::words));
     text += &more(&fit_result.inferred);

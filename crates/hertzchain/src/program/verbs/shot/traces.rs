@@ -1,13 +1,13 @@
 //! Traces, figures and the moving picture of a shot.
 
+use crate::csv::{Column, table, view};
 use crate::options::{ShotOptions as Arguments, recorded};
 use crate::program::failure::Failure;
 use crate::program::folder::Folder;
 use crate::program::format::Style;
 use crate::program::pictures;
-use crate::program::print;
-use crate::shot::ShotResult;
-use crate::table::{cell, suffix};
+use crate::shot::{self, ShotResult};
+use crate::table::suffix;
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
 use hertzchain_experiment::{Experiment, Units};
@@ -101,8 +101,7 @@ pub(super) fn write(
         let page = animation(experiment, plan, &trace, columns, &bodies).html();
         folder.write(ANIMATION, page.as_bytes())?;
     }
-    print::written(&folder.finish()?);
-    Ok(())
+    folder.finish_and_report()
 }
 
 /// The experiment's title and the speed of the striker.
@@ -137,21 +136,19 @@ fn csv(trace: &Trace, sensors: &[Sensor], experiment: &Experiment, noise: f64) -
     let (units, wall) = (experiment.units(), pictures::wall(experiment));
     let column = |sensor: &Sensor| {
         let (name, unit) = pictures::name(*sensor, wall);
-        format!(",{}{}", name.replace(' ', "_"), suffix(unit, units))
+        format!("{}{}", name.replace(' ', "_"), suffix(unit, units))
     };
-    let names: String = sensors.iter().map(column).collect();
+    let titles = std::iter::once(format!("time{}", suffix("s", units)));
     let floors = floors(trace, sensors, wall, noise);
-    let mut text = format!("time{}{names}\n", suffix("s", units));
-    for (row, time) in trace.time_s.iter().enumerate() {
-        text += &cell(*time);
-        for (column, floor) in trace.columns.iter().zip(&floors) {
+    let line = |(row, time): (usize, &f64)| {
+        let columns = trace.columns.iter().zip(&floors).map(move |(column, floor)| {
             let value = column.get(row).copied().unwrap_or(f64::NAN);
-            let value = if value.abs() < *floor { 0.0 } else { value };
-            text += &format!(",{}", cell(value));
-        }
-        text.push('\n');
-    }
-    text
+            if value.abs() < *floor { 0.0 } else { value }
+        });
+        std::iter::once(*time).chain(columns).map(Value::from)
+    };
+    let lines = trace.time_s.iter().enumerate().map(line);
+    table(titles.chain(sensors.iter().map(column)), lines)
 }
 
 /// The smallest number that means anything, a column: the solver's error is
@@ -169,21 +166,15 @@ fn floors(trace: &Trace, sensors: &[Sensor], wall: Option<usize>, noise: f64) ->
 
 fn energy_csv(trace: &Trace, units: Units) -> String {
     let first = trace.budgets.first();
-    let laws = first.map_or(&[][..], |budget| &budget.dissipated);
-    let parts = ["start", "driven", "kinetic", "elastic"].into_iter();
-    let parts = parts.chain(laws.iter().map(|line| line.law));
-    let parts = parts.chain(["clipped", "gravity", "preload", "stop", "residual"]);
+    let laws = first.map_or(&[][..], |budget| &budget.dissipated).iter().map(|line| line.law);
     let unit = suffix("J", units);
-    let names: String = parts.map(|part| format!(",{part}{unit}")).collect();
-    let mut text = format!("time{}{names}\n", suffix("s", units));
-    for b in &trace.budgets {
-        let lost = b.dissipated.iter().map(|line| line.energy_j);
-        let first = [b.time_s, b.start_j, b.driven_j, b.kinetic_j, b.elastic_j];
-        let rest = [b.clipped_j, b.gravity_j, b.preload_j, b.stop_j, b.residual_j()];
-        let cells: Vec<String> = (first.into_iter().chain(lost).chain(rest)).map(cell).collect();
-        text += &format!("{}\n", cells.join(","));
-    }
-    text
+    let part = |name: &str| (format!("{name}{unit}"), format!("/{name}_j"));
+    let parts = ["start", "driven", "kinetic", "elastic"].map(part).into_iter();
+    let laws = laws.map(|law| (format!("{law}{unit}"), format!("/dissipated_j/{law}")));
+    let rest = ["clipped", "gravity", "preload", "stop", "residual"].map(part);
+    let time = (format!("time{}", suffix("s", units)), "/time_s".to_owned());
+    let columns: Vec<Column> = [time].into_iter().chain(parts).chain(laws).chain(rest).collect();
+    view(&trace.budgets.iter().map(shot::energy).collect::<Vec<_>>(), &columns)
 }
 
 fn npy(

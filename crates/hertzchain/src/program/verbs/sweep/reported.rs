@@ -6,10 +6,11 @@ use crate::program::failure::Failure;
 use crate::program::folder::Folder;
 use crate::program::format::{self, Style};
 use crate::program::pictures;
-use crate::program::print::{self, heading, print};
-use crate::table::{self, cell};
+use crate::program::print::{heading, print};
+use crate::{csv, table};
 use hertzchain_experiment::Units;
 use hertzchain_sim::{BatchResult, COLUMNS, Column, Rows};
+use std::collections::HashSet;
 
 /// What a column is called, its unit, the size of the unit, and which it is.
 type Shown = (&'static str, &'static str, f64, Column);
@@ -88,24 +89,17 @@ fn lines(style: Style, rows: &Rows) -> String {
 pub(crate) fn write(mut folder: Folder, part: &BatchResult) -> Result<(), Failure> {
     folder.write("sweep.csv", csv(part).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(part))?;
-    print::written(&folder.finish()?);
-    Ok(())
+    folder.finish_and_report()
 }
 
 /// Shots that are none have no line.
 fn csv(part: &BatchResult) -> String {
-    let names = match part.units {
-        Units::Si => COLUMNS,
-        Units::Dimensionless => COLUMNS.map(table::without_unit),
-    };
-    let mut text = format!("{}\n", names.join(","));
-    let mut failed = part.rows.failed.iter().map(|failed| failed.place).peekable();
-    for place in 0..part.rows.len() {
-        if failed.next_if_eq(&place).is_some() {
-            continue;
-        }
-        let cells = part.rows.columns.iter().map(|column| cell(column[place]));
-        text += &format!("{}\n", cells.collect::<Vec<_>>().join(","));
-    }
-    text
+    let titles = COLUMNS.iter().map(|name| match part.units {
+        Units::Si => name,
+        Units::Dimensionless => table::without_unit(name),
+    });
+    let failed: HashSet<usize> = part.rows.failed.iter().map(|failed| failed.place).collect();
+    let places = (0..part.rows.len()).filter(|place| !failed.contains(place));
+    let line = |place: usize| part.rows.columns.iter().map(move |column| column[place].into());
+    csv::table(titles, places.map(line))
 }

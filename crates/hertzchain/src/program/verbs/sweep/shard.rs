@@ -25,7 +25,7 @@ pub(crate) fn run(
         true => "there already".to_owned(),
         false => format!("computed in {:.1} s", begun.elapsed().as_secs_f64()),
     };
-    let assumed = lines(assumed(&arguments.input).into_iter().collect());
+    let assumed = lines(assumed(&arguments.input));
     print(&format!(
         "{assumed}Shard {shard} of {}\n{shots} shots, {what}: {}\n",
         done.result.about,
@@ -40,16 +40,14 @@ pub(crate) fn report_warnings(part: &BatchResult) {
         part.rows.column(Column::Speed).get(at).copied().unwrap_or(f64::NAN)
     };
     if let Some(warnings) = &part.rows.warnings {
-        for line in &warnings.lines {
-            print::note(&format!("warning: {line}"));
-        }
+        print::warn(&warnings.lines);
         match warnings.shots {
             0 | 1 => {}
-            shots => print::note(&format!("warning: there are warnings at {shots} speeds")),
+            shots => print::warn([format!("there are warnings at {shots} speeds")]),
         }
     }
     for failed in &part.rows.failed {
         let place = speed(failed.place);
-        print::note(&format!("warning: no shot at {place}: {}", failed.why));
+        print::warn([format!("no shot at {place}: {}", failed.why)]);
     }
 }
