@@ -6,7 +6,7 @@ mod respond;
 #[cfg(not(target_family = "wasm"))]
 pub mod server;
 
-pub use engine::{Recording, Refusal, Reply, Request, Verbs, answer};
+pub use engine::{Recording, Refusal, Request, Verbs, answer};
 pub use respond::respond;
 #[cfg(not(target_family = "wasm"))]
 pub use server::{ServerError, Settings, open, serve};

@@ -1,9 +1,9 @@
 //! The engine as a program: one request from a stream to another.
 
-use crate::engine::{Refusal, Reply, Request, Verbs, answer};
+use crate::engine::{Refusal, Request, Verbs, answer};
 use hertzchain_sim::Stop;
 use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 
 /// A reply or why there is none, as the page reads it.
@@ -11,13 +11,13 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Response {
     /// The answer.
-    Reply(Reply),
+    Reply(Value),
     /// Why there is none.
     Refused(Refusal),
 }
 
-impl From<Result<Reply, Refusal>> for Response {
-    fn from(answered: Result<Reply, Refusal>) -> Self {
+impl From<Result<Value, Refusal>> for Response {
+    fn from(answered: Result<Value, Refusal>) -> Self {
         match answered {
             Ok(reply) => Self::Reply(reply),
             Err(refusal) => Self::Refused(refusal),

@@ -31,14 +31,14 @@ impl Verbs for Echo {
 
 /// The reply to a request in JSON.
 pub fn reply(request: Value) -> Value {
-    serde_json::to_value(answered(request).unwrap()).unwrap()
+    answered(request).unwrap()
 }
 
 pub fn refusal(request: Value) -> Refusal {
     answered(request).unwrap_err()
 }
 
-fn answered(request: Value) -> Result<hertzchain_explore::Reply, Refusal> {
+fn answered(request: Value) -> Result<Value, Refusal> {
     let request: Request = serde_json::from_value(request).unwrap();
     answer(&request, &Echo, &Stop::default())
 }

@@ -23,8 +23,7 @@ const LETTERS: [(&str, &str); 16] = [
     ("}", ""),
 ];
 
-/// A published work.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct Publication {
     /// Authors, family name first.
     pub(crate) authors: Vec<String>,
@@ -37,13 +36,13 @@ pub(crate) struct Publication {
     /// Pages or number of the article.
     pub(crate) pages: Option<String>,
     /// Year in which it appeared.
-    pub(crate) year: String,
+    pub(crate) year: i32,
     /// Publisher, school or a note, where there is no journal.
+    #[serde(skip)]
     elsewhere: Option<String>,
 }
 
 impl Publication {
-    /// The work with this key.
     pub(crate) fn of_key(key: &str) -> Option<Self> {
         let entry = entry(key)?;
         let field = |name: &str| field(entry, name);
@@ -55,7 +54,7 @@ impl Publication {
             journal: field("journal"),
             volume: field("volume"),
             pages: field("pages"),
-            year: field("year")?,
+            year: field("year")?.parse().ok()?,
             elsewhere: places.iter().find_map(|name| field(name)),
         })
     }
@@ -81,7 +80,6 @@ impl Publication {
     }
 }
 
-/// The fields of an entry.
 fn entry(key: &str) -> Option<&'static str> {
     let mut entries = BIBLIOGRAPHY.split("\n@").skip(1);
     let of_key = |entry: &&str| {

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::options::CampaignOptions;
+use crate::sweep;
 use hertzchain_experiment::Experiment;
 use hertzchain_sim::rig::{self, Done, Plan, Progress};
 
@@ -40,9 +41,7 @@ impl<'a> PreparedCampaign<'a> {
     /// A folder with something else in it, a recording that can't be written.
     pub fn run(&self, watch: &(dyn Fn(Progress) + Sync)) -> Result<Done, Failure> {
         let CampaignOptions { out, shard, threads, .. } = self.options;
-        let pool = hertzchain_sim::pool(threads.map_or(0, |threads| threads.0));
-        let pool = pool.map_err(|error| Failure::Ours(format!("threads: {error}")))?;
-        Ok(pool.install(|| rig::campaign(&self.plan, out, *shard, watch))?)
+        Ok(sweep::pool(*threads)?.install(|| rig::campaign(&self.plan, out, *shard, watch))?)
     }
 }
 

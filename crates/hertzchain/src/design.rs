@@ -3,7 +3,7 @@
 use crate::csv::{Table, columns, list, table, view};
 use crate::failure::Failure;
 use crate::inference::{self, is_meant, references_json, user};
-use crate::options::{DesignOptions as Arguments, Preload};
+use crate::options::DesignOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fit, Fitting,
@@ -110,15 +110,10 @@ pub fn targets(problem: &CurveProblem, arguments: &Arguments) -> Result<Vec<usiz
 /// What the options say could be done otherwise.
 fn choices(arguments: &Arguments) -> Choices {
     let mut choices = Choices {
-        preloads_n: Vec::new(),
+        preloads_n: arguments.preloads.iter().filter_map(|preload| preload.0).collect(),
         sensor_beads: arguments.sensors.clone(),
         ..Choices::default()
     };
-    for preload in &arguments.preloads {
-        if let Preload::Of(force_n) = preload {
-            choices.preloads_n.push(*force_n);
-        }
-    }
     for cost in &arguments.costs {
         choices.costs[Kind::from(cost.of) as usize] = cost.value;
     }
@@ -126,9 +121,6 @@ fn choices(arguments: &Arguments) -> Choices {
 }
 
 /// Fits, and ranks candidates by what they would determine of the targets.
-///
-/// # Errors
-/// What is in the way of the fit or of a candidate's curve.
 pub(crate) fn run_design(
     problem: &CurveProblem,
     targets: &[usize],

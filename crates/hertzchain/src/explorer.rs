@@ -25,7 +25,6 @@ pub fn run_engine() -> io::Result<()> {
     hertzchain_explore::respond(&Library, io::stdin().lock(), io::stdout().lock())
 }
 
-/// The library's verbs behind the page.
 pub(crate) struct Library;
 
 impl Verbs for Library {

@@ -8,6 +8,7 @@ use hertzchain_infer::InferError;
 use hertzchain_sim::rig::RigError;
 use hertzchain_sim::{StudyError, parse_speed};
 use miette::{Diagnostic, Severity};
+use std::path::Path;
 
 /// Why a verb failed.
 #[derive(Debug)]
@@ -120,6 +121,11 @@ impl Failure {
     }
 }
 
+/// That a file can't be read, and why.
+pub(crate) fn unread<E: std::fmt::Display>(file: &Path) -> impl Fn(E) -> Failure {
+    move |error| Failure::User(format!("{} can't be read: {error}", file.display()))
+}
+
 /// A report that underlines the offending text, where that is of readable length.
 #[cfg(not(target_family = "wasm"))]
 fn underlined(finding: &Finding, colour: bool) -> Option<String> {
@@ -139,7 +145,6 @@ fn underlined(_: &Finding, _: bool) -> Option<String> {
     None
 }
 
-/// Most reports that anybody reads at once.
 const MOST: usize = 20;
 
 fn findings(findings: &[Finding], kind: &str, colour: bool) -> String {

@@ -10,7 +10,7 @@ use hertzchain_sim::{InstructionSet, Method, Plan};
 use std::path::Path;
 
 /// The preset that is used when no experiment is named.
-const USUAL: &str = "dry";
+pub(crate) const USUAL: &str = "dry";
 
 /// Opens the file or the preset; the paper's dry chain where neither is named.
 pub(crate) fn open(input: &Input) -> Result<Experiment, Failure> {
@@ -27,11 +27,15 @@ pub(crate) fn open_or(input: &Input, usual: &str) -> Result<Experiment, Failure>
     }
 }
 
+pub(crate) fn is_named(input: &Input) -> bool {
+    input.file.is_some() || input.preset.is_some()
+}
+
 /// That an experiment which was not named is the paper's dry chain: the first line of what
 /// comes of it.
 pub(crate) fn assumed(input: &Input) -> Option<String> {
-    let is_named = input.file.is_some() || input.preset.is_some();
-    (!is_named).then(|| assumed_preset("experiment", "dry chain", USUAL, "FILE or --preset NAME"))
+    (!is_named(input))
+        .then(|| assumed_preset("experiment", "dry chain", USUAL, "FILE or --preset NAME"))
 }
 
 /// That something which was not named is a chain of the paper.

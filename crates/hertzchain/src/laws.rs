@@ -36,19 +36,6 @@ pub fn nature(info: &LawInfo) -> &'static str {
     }
 }
 
-fn source_json(info: &LawInfo) -> Json {
-    Publication::of_key(info.reference).map_or(Json::Null, |work| {
-        json!({
-            "authors": work.authors,
-            "title": work.title,
-            "journal": work.journal,
-            "volume": work.volume,
-            "pages": work.pages,
-            "year": work.year.parse::<i32>().ok(),
-        })
-    })
-}
-
 fn as_json(info: &LawInfo) -> Json {
     let parameter = |p: &Parameter| {
         let value = match p.source {
@@ -73,7 +60,7 @@ fn as_json(info: &LawInfo) -> Json {
         "gated": info.gated,
         "validity": info.validity,
         "reference": info.reference,
-        "source": source_json(info),
+        "source": Publication::of_key(info.reference),
         "parameters": info.parameters.iter().map(parameter).collect::<Json>(),
     })
 }

@@ -3,7 +3,6 @@
 use hertzchain_experiment::Units;
 use hertzchain_sim::dimensionless_unit;
 
-/// Units that take prefixes.
 const PREFIXED: [&str; 6] = ["s", "N", "m", "J", "Hz", "Pa"];
 
 const PREFIXES: [(f64, &str); 8] = [
@@ -17,7 +16,6 @@ const PREFIXES: [(f64, &str); 8] = [
     (1e-12, "p"),
 ];
 
-/// How numbers are written.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Style {
     /// Significant digits.

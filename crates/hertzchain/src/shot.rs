@@ -202,7 +202,6 @@ fn passage(shot: &Shot, units: Units, plan: &Plan) -> Value {
     })
 }
 
-/// Where the energy is at one time.
 pub(crate) fn energy(budget: &Budget) -> Value {
     let lost = budget.dissipated.iter().map(|line| (line.law.to_owned(), line.energy_j.into()));
     json!({

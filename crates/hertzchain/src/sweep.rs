@@ -1,7 +1,7 @@
 //! Many shots of an experiment: batches over speeds and named numbers, and their results.
 
 use crate::failure::Failure;
-use crate::options::{SweepOptions, check_speeds};
+use crate::options::{SweepOptions, Threads, check_speeds};
 use crate::{input, missing, shot};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
@@ -122,16 +122,16 @@ pub(crate) fn computed(
         points.push(point);
     };
     let (result, calibration) =
-        pool(options)?.install(|| batch.run_each(Shard::WHOLE, progress, take));
+        pool(options.threads)?.install(|| batch.run_each(Shard::WHOLE, progress, take));
     let mut summary = SweepSummary::new(experiment, &result, calibration.as_ref());
     summary.assumed_model = input::assumed(&options.input);
     Ok(SweepResult { points, result, summary, plan: plan(experiment, options)? })
 }
 
-/// As many threads as the options ask for.
-pub(crate) fn pool(options: &SweepOptions) -> Result<rayon::ThreadPool, Failure> {
-    let threads = options.threads.map_or(0, |threads| threads.0);
-    hertzchain_sim::pool(threads).map_err(|error| Failure::Ours(format!("threads: {error}")))
+/// As many threads as an option asks for.
+pub(crate) fn pool(threads: Option<Threads>) -> Result<rayon::ThreadPool, Failure> {
+    let pool = hertzchain_sim::pool(threads.map_or(0, |threads| threads.0));
+    pool.map_err(|error| Failure::Ours(format!("threads: {error}")))
 }
 
 /// A sweep without its shots.

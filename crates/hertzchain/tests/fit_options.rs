@@ -36,7 +36,7 @@ fn options_of_a_results_json_give_the_same_bits_again() {
     assert_eq!(found["version"], env!("CARGO_PKG_VERSION"));
     let options: FitOptions = from_json("fit", found["options"].clone()).unwrap();
     assert_eq!(recorded(&options), found["options"]);
-    let data = inference::data(Path::new(&data), &options.measured).unwrap();
+    let data = inference::data(Path::new(&data), &options.measured, None).unwrap();
     let dry = inference::experiment(&options.modelled, None).unwrap();
     let again = hertzchain::fit(&data, &dry, &options).unwrap();
     assert_eq!(fit::json(&again, &options)["parameters"], found["parameters"]);

@@ -79,7 +79,7 @@ fn a_fit_of_several_tables_is_the_same_from_rust() {
     let found = json(&with_errors(&fit));
     let options = serde_json::json!({"free": ["eta", "B"], "tof_error": 2e-7, "speed_error": 5e-4});
     let options: FitOptions = from_json("fit", options).unwrap();
-    let data = inference::data(table.as_ref(), &options.measured).unwrap();
+    let data = inference::data(table.as_ref(), &options.measured, None).unwrap();
     let pair = (data, preset("dry").unwrap());
     let own = hertzchain::fit::fit_tables(&[pair.clone(), pair], &options).unwrap();
     let value = |at: usize| found["parameters"][at]["value"].as_f64().unwrap();

@@ -468,7 +468,7 @@ fn a_measured_curve_is_fitted_in_memory_as_from_its_file() {
     let output = measure(&folder, &[".", "--shots", "list.txt", "--out", "out"]);
     assert_eq!(output.status.code(), Some(0));
     let options = CurveOptions { case: Some("dry".to_owned()), ..CurveOptions::default() };
-    let stored = inference::data(&folder.join("out/speeds.csv"), &options).unwrap();
+    let stored = inference::data(&folder.join("out/speeds.csv"), &options, None).unwrap();
     assert_eq!(curve.rows, stored.rows);
 }
 

@@ -116,7 +116,7 @@ pub fn largest_residual(problem: &dyn Problem, fit: &Fit, of: Range<usize>) -> O
 
 /// Runs of equal sign in a row of residuals: too few mean that the curve's shape is wrong, though
 /// each point may be near it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Runs {
     /// Number of runs.
     pub count: usize,

@@ -2,11 +2,12 @@
 
 use crate::InferError;
 use hertzchain_sim::{Fingerprint, count_done};
+use serde::Serialize;
 use std::fmt;
 use std::sync::OnceLock;
 
 /// A free parameter of a [`Problem`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
     /// Name, as messages and tables show it.
     pub name: String,
@@ -26,7 +27,8 @@ pub struct Parameter {
 }
 
 /// What is known of a parameter apart from the data.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize)]
+#[serde(untagged)]
 pub enum Prior {
     /// Flat within the bounds.
     #[default]

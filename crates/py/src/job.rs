@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use std::fmt::Display;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::{Builder, Result as Joined, scope};
 use std::time::Duration;
 
@@ -18,21 +18,12 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Room for deep calls, as a main thread has.
 const STACK_BYTES: usize = 16 << 20;
 
-/// Where a job is computed.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Threads {
-    /// In one thread.
-    One,
-    /// In so many, all cores' if 0.
-    Many(usize),
-}
-
 /// A job's way to Python: to whom it reports what is done, and how it is stopped.
 pub(crate) struct Job<'py> {
     /// Called with what is done since the last time.
-    pub progress: Option<Bound<'py, PyAny>>,
-    /// Where it is computed.
-    pub threads: Threads,
+    progress: Option<Bound<'py, PyAny>>,
+    /// In how many threads of a pool, all cores' if 0; in one thread if `None`.
+    threads: Option<usize>,
     /// Asked once Python wants no more.
     pub stop: Stop,
     /// What progress counts.
@@ -42,17 +33,12 @@ pub(crate) struct Job<'py> {
 impl<'py> Job<'py> {
     /// With a pool of threads.
     pub(crate) fn pooled(progress: Option<Bound<'py, PyAny>>, threads: usize) -> Self {
-        Self {
-            progress,
-            threads: Threads::Many(threads),
-            stop: Stop::default(),
-            counted: Stop::done,
-        }
+        Self { progress, threads: Some(threads), ..Self::alone() }
     }
 
     /// In one thread, without progress.
     pub(crate) fn alone() -> Self {
-        Self { progress: None, threads: Threads::One, stop: Stop::default(), counted: Stop::done }
+        Self { progress: None, threads: None, stop: Stop::default(), counted: Stop::done }
     }
 
     /// In one thread, reporting of the steps of a single shot.
@@ -63,9 +49,6 @@ impl<'py> Job<'py> {
     /// Computes without Python's lock. A signal, or a progress that raises,
     /// breaks off and is raised. Progress is what is counted on the
     /// [`Stop`] that the work gets.
-    ///
-    /// # Errors
-    /// What Python raised meanwhile, or what `work` says.
     pub(crate) fn run<T: Send>(
         self,
         py: Python<'py>,
@@ -77,9 +60,6 @@ impl<'py> Job<'py> {
     /// The same for work that leaves nothing behind but its result and has pieces that
     /// take long and look at no wish to stop: once there is one, no caller waits for the
     /// piece under way. Its thread ends with it.
-    ///
-    /// # Errors
-    /// As [`run`](Self::run).
     pub(crate) fn run_apart<T: Send + 'static>(
         self,
         py: Python<'py>,
@@ -91,7 +71,7 @@ impl<'py> Job<'py> {
     fn followed<T: Send>(
         self,
         py: Python<'py>,
-        compute: impl FnOnce(&Stop, Threads, Look<'_>) -> PyResult<Result<T, Failure>> + Send,
+        compute: impl FnOnce(&Stop, Option<usize>, Look<'_>) -> PyResult<Result<T, Failure>> + Send,
     ) -> PyResult<T> {
         let teller = self.progress.map(Bound::unbind);
         let (stop, threads, counted) = (self.stop, self.threads, self.counted);
@@ -117,18 +97,14 @@ type Look<'a> = &'a (dyn Fn() -> PyResult<()> + Sync);
 /// Works in another thread while this one looks after Python.
 fn watched<T: Send>(
     stop: &Stop,
-    threads: Threads,
+    threads: Option<usize>,
     work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
     look: Look<'_>,
 ) -> PyResult<Result<T, Failure>> {
     let (done, waiting) = channel::<()>();
     scope(|scope| {
-        let worker = Builder::new().stack_size(STACK_BYTES);
-        let worker = worker.spawn_scoped(scope, move || {
-            let _signals_when_dropped = done;
-            computed(stop, threads, work)
-        });
-        let worker = match worker {
+        let work = move || computed(stop, threads, work, done);
+        let worker = match Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, work) {
             Ok(worker) => worker,
             Err(error) => return Ok(Err(no_threads(&error))),
         };
@@ -141,18 +117,14 @@ fn watched<T: Send>(
 /// The same in a thread that goes its own way once Python wants no more.
 fn apart<T: Send + 'static>(
     stop: &Stop,
-    threads: Threads,
+    threads: Option<usize>,
     work: impl FnOnce(&Stop) -> Result<T, Failure> + Send + 'static,
     look: Look<'_>,
 ) -> PyResult<Result<T, Failure>> {
     let (done, waiting) = channel::<()>();
     let own = stop.clone();
-    let worker = Builder::new().stack_size(STACK_BYTES);
-    let worker = worker.spawn(move || {
-        let _signals_when_dropped = done;
-        computed(&own, threads, work)
-    });
-    let worker = match worker {
+    let work = move || computed(&own, threads, work, done);
+    let worker = match Builder::new().stack_size(STACK_BYTES).spawn(work) {
         Ok(worker) => worker,
         Err(error) => return Ok(Err(no_threads(&error))),
     };
@@ -177,19 +149,17 @@ fn no_threads(error: &dyn Display) -> Failure {
     Failure::Ours(format!("threads: {error}"))
 }
 
+/// Dropping `_done` signals the end, by a panic too.
 fn computed<T: Send>(
     stop: &Stop,
-    threads: Threads,
+    threads: Option<usize>,
     work: impl FnOnce(&Stop) -> Result<T, Failure> + Send,
+    _done: Sender<()>,
 ) -> Result<T, Failure> {
-    match threads {
-        Threads::One => {
-            stop.clone().adopt();
-            work(stop)
-        }
-        Threads::Many(count) => {
-            let pool = stop.pool(count).map_err(|error| no_threads(&error))?;
-            pool.install(|| work(stop))
-        }
-    }
+    let Some(count) = threads else {
+        stop.clone().adopt();
+        return work(stop);
+    };
+    let pool = stop.pool(count).map_err(|error| no_threads(&error))?;
+    pool.install(|| work(stop))
 }

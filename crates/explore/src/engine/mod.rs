@@ -12,16 +12,13 @@ mod words;
 pub use array::Array;
 pub use batch::{BatchReply, PowerLawReply, Speeds};
 pub use edit::{Edit, Step};
-pub use outline::{Outline, OutlineReply, PresetReply};
 pub use refusal::{Mistake, Refusal};
-pub use shot::{Body, EnergyReply, MotionReply, Peak, ShotReply};
-pub use words::{GroupReply, RowReply};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use hertzchain_sim::Stop;
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::Value;
+use serde::{Deserialize, Deserializer};
+use serde_json::{Value, json};
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]
@@ -107,24 +104,6 @@ fn bytes<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u8>, D::Error> {
     STANDARD.decode(text).map_err(serde::de::Error::custom)
 }
 
-/// What the page gets.
-#[derive(Debug, Serialize)]
-#[serde(untagged)]
-pub enum Reply {
-    /// Experiments that come with the program.
-    Presets(Vec<PresetReply>),
-    /// An experiment as understood.
-    Check(Box<OutlineReply>),
-    /// One shot.
-    Shot(Box<ShotReply>),
-    /// Times of flight against speed.
-    Batch(Box<BatchReply>),
-    /// What theory says.
-    Theory(Vec<GroupReply>),
-    /// What another verb returns, as its `--json` prints it.
-    Json(Value),
-}
-
 /// The verbs of the program that are no simulation; each returns what its `--json` prints.
 pub trait Verbs: Send + Sync + 'static {
     /// All contact laws.
@@ -143,11 +122,11 @@ pub trait Verbs: Send + Sync + 'static {
     fn fit(&self, text: &str, table: &str, options: &Value) -> Result<Value, String>;
 }
 
-/// Answers a request on threads that end early once `stop` is asked for.
+/// Answers a request, in JSON, on threads that end early once `stop` is asked for.
 ///
 /// # Errors
 /// Mistakes in the experiment with their places, and whatever else keeps from an answer.
-pub fn answer(request: &Request, verbs: &dyn Verbs, stop: &Stop) -> Result<Reply, Refusal> {
+pub fn answer(request: &Request, verbs: &dyn Verbs, stop: &Stop) -> Result<Value, Refusal> {
     let reply = if cfg!(target_family = "wasm") {
         // No threads there: the page runs several engines.
         stop.clone().adopt();
@@ -161,24 +140,23 @@ pub fn answer(request: &Request, verbs: &dyn Verbs, stop: &Stop) -> Result<Reply
     }
 }
 
-fn dispatch(request: &Request, verbs: &dyn Verbs) -> Result<Reply, Refusal> {
+fn dispatch(request: &Request, verbs: &dyn Verbs) -> Result<Value, Refusal> {
     match request {
-        Request::Presets => Ok(Reply::Presets(outline::presets())),
-        Request::Laws => Ok(Reply::Json(verbs.laws())),
-        Request::Schema => Ok(Reply::Json(hertzchain_experiment::schema())),
-        Request::Check { text, edits } => {
-            outline::check(text, edits).map(Box::new).map(Reply::Check)
-        }
+        Request::Presets => Ok(outline::presets()),
+        Request::Laws => Ok(verbs.laws()),
+        Request::Schema => Ok(hertzchain_experiment::schema()),
+        Request::Check { text, edits } => outline::check(text, edits),
         Request::Shot { text, edits, samples, draft } => {
-            let text = edit::edited(text, edits)?;
-            shot::shot(&text, *samples, *draft).map(Box::new).map(Reply::Shot)
+            shot::shot(&edit::edited(text, edits)?, *samples, *draft)
         }
         Request::Batch { text, speeds, shard } => {
-            batch::batch(text, speeds, *shard).map(Box::new).map(Reply::Batch)
+            batch::batch(text, speeds, *shard).map(|reply| json!(reply))
         }
-        Request::Join { shards } => Ok(Reply::Batch(Box::new(batch::join(shards)))),
-        Request::Theory { text } => outline::theory(text).map(Reply::Theory),
-        Request::Measure(recording) => words::reported(verbs.measure(recording)),
-        Request::Fit { text, table, options } => words::reported(verbs.fit(text, table, options)),
+        Request::Join { shards } => Ok(json!(batch::join(shards))),
+        Request::Theory { text } => outline::theory(text),
+        Request::Measure(recording) => verbs.measure(recording).map_err(Refusal::Error),
+        Request::Fit { text, table, options } => {
+            verbs.fit(text, table, options).map_err(Refusal::Error)
+        }
     }
 }

@@ -7,118 +7,33 @@ use hertzchain_chain::{Chain, FarEnd, Sensor, Start, System};
 use hertzchain_experiment::Experiment;
 use hertzchain_sim::{Plan, Shot, StudyError, shoot, shoot_estimated};
 use serde::Serialize;
+use serde_json::{Value as Json, json};
 
 /// Most samples of a signal, and most numbers of a motion: some ten megabytes of JSON.
 const MOST_SAMPLES: usize = 4000;
 const MOST_NUMBERS: usize = 2_000_000;
 
-/// One shot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ShotReply {
-    /// Speed of the striker in m/s.
-    pub speed_m_s: Option<f64>,
-    /// Incident time of flight in s.
-    pub tof_incident_s: Option<f64>,
-    /// Reflected time of flight in s.
-    pub tof_reflected_s: Option<f64>,
-    /// Bound on their relative error.
-    pub accuracy_reached: Option<f64>,
-    /// Why there is no time of flight.
-    pub missing: Option<String>,
-    /// Where the incident pulse was picked.
-    pub incident: Option<Peak>,
-    /// Where the pulse at the wall was picked.
-    pub wall: Option<Peak>,
-    /// Where the reflected pulse was picked.
-    pub reflected: Option<Peak>,
-    /// Beads per second between sensor bead and wall.
-    pub pulse_speed_beads_s: Option<f64>,
-    /// Velocity of the striker when it first let go, in m/s.
-    pub rebound_first_m_s: Option<f64>,
-    /// Its velocity at the end, in m/s.
-    pub rebound_end_m_s: Option<f64>,
-    /// Velocities at the end in m/s, body 0 first.
-    pub velocity_m_s: Vec<f64>,
-    /// Duration in s.
-    pub duration_s: f64,
-    /// How it was computed.
-    pub solver: String,
-    /// Force passes.
-    pub force_passes: u64,
-    /// What a reader of the numbers must know.
-    pub notes: Vec<String>,
-    /// What is noteworthy about the experiment at this speed.
-    pub warnings: Vec<Mistake>,
-    /// The bodies, from the striker to the far end.
-    pub bodies: Vec<Body>,
-    /// Signals and motion, if samples were asked for.
-    pub motion: Option<MotionReply>,
-    /// Energy over time.
-    pub energy: Option<EnergyReply>,
-}
-
-/// A maximum of a signal.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Peak {
-    /// When, in s.
-    pub time_s: f64,
-    /// Height in N.
-    pub value_n: f64,
-    /// Full width at half maximum in s.
-    pub width_s: Option<f64>,
-}
-
 /// A body as it is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Body {
+pub(super) struct Body {
     /// `striker`, `driven`, `bead`, `half-bead` or `plane`.
-    pub kind: &'static str,
+    kind: &'static str,
     /// Its number: 0 for the striker, 1 for the first bead.
-    pub number: usize,
+    number: usize,
     /// Radius in m.
-    pub radius_m: f64,
+    radius_m: f64,
     /// Mass in kg; null where it does not move.
-    pub mass_kg: Option<f64>,
+    mass_kg: Option<f64>,
     /// Where its centre rests, in m.
-    pub rest_m: f64,
+    rest_m: f64,
     /// Whether it is the sensor bead.
-    pub sensor: bool,
+    sensor: bool,
     /// Whether its contact with the next body is wet.
-    pub wet: bool,
-}
-
-/// Signals and motion at equal times.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct MotionReply {
-    /// Time between samples in s; the first is at 0.
-    pub interval_s: f64,
-    /// Number of samples.
-    pub samples: usize,
-    /// Signal of the sensor bead in N.
-    pub sensor_n: Array,
-    /// Signal of the wall in N; empty without a wall.
-    pub wall_n: Array,
-    /// Displacements in m, body after body.
-    pub displacement_m: Array,
-    /// Dynamic forces of contacts in N, contact after contact.
-    pub force_n: Array,
-}
-
-/// Energy over time, in J.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EnergyReply {
-    /// Times in s.
-    pub time_s: Array,
-    /// Energy that was put in.
-    pub input_j: f64,
-    /// Curves by name, which together are what was put in.
-    pub parts: Vec<(String, Array)>,
-    /// What is missing at the end, over what was put in.
-    pub relative_residual: f64,
+    wet: bool,
 }
 
 /// Returns one shot at the experiment's own speed.
-pub(super) fn shot(text: &str, samples: usize, draft: bool) -> Result<ShotReply, Refusal> {
+pub(super) fn shot(text: &str, samples: usize, draft: bool) -> Result<Json, Refusal> {
     let experiment = outline::experiment(text)?;
     let refused = |mistakes| Refusal::of_text(text, &mistakes);
     let (plan, warnings) = Plan::from_experiment(&experiment, None).map_err(refused)?;
@@ -137,50 +52,46 @@ pub(super) fn shot(text: &str, samples: usize, draft: bool) -> Result<ShotReply,
         0 => None,
         asked => Some(sampled(&plan, &shot, &bodies, asked).map_err(failed)?),
     };
-    Ok(ShotReply {
-        warnings: Mistake::all(text, &warnings),
-        energy: trace.as_ref().and_then(|(trace, _)| energy(trace, &shot)),
-        motion: trace.map(|(trace, interval_s)| motion(trace, interval_s, &plan, &bodies)),
-        bodies,
-        ..numbers(&experiment, &plan, &shot)
-    })
+    let mut all = numbers(&experiment, &plan, &shot);
+    all["warnings"] = json!(Mistake::all(text, &warnings));
+    all["energy"] = json!(trace.as_ref().and_then(|(trace, _)| energy(trace, &shot)));
+    all["motion"] = json!(trace.map(|(trace, step_s)| motion(&trace, step_s, &plan, &bodies)));
+    all["bodies"] = json!(bodies);
+    Ok(all)
 }
 
 /// The numbers of a shot, nothing that is drawn.
-fn numbers(experiment: &Experiment, plan: &Plan, shot: &Shot) -> ShotReply {
+fn numbers(experiment: &Experiment, plan: &Plan, shot: &Shot) -> Json {
     let seen = shot.passage.as_ref().ok();
     let missing = shot.passage.as_ref().err().map(|error| match plan.chain.far {
         FarEnd::Free | FarEnd::Periodic { .. } => "the chain has no wall".to_owned(),
         _ => error.to_string(),
     });
     let rebound = shot.rebound.as_ref();
-    ShotReply {
-        speed_m_s: experiment.speed_m_s(),
-        tof_incident_s: shot.flight.map(|flight| flight.incident_s),
-        tof_reflected_s: shot.flight.and_then(|flight| flight.reflected_s),
-        accuracy_reached: shot.accuracy_reached,
-        missing,
-        incident: seen.map(|seen| peak(&seen.incident, seen.incident_width_s)),
-        wall: shot.wall().map(|wall| peak(&wall, seen.and_then(|seen| seen.wall_width_s))),
-        reflected: seen
+    json!({
+        "speed_m_s": experiment.speed_m_s(),
+        "tof_incident_s": shot.flight.map(|flight| flight.incident_s),
+        "tof_reflected_s": shot.flight.and_then(|flight| flight.reflected_s),
+        "accuracy_reached": shot.accuracy_reached,
+        "missing": missing,
+        "incident": seen.map(|seen| peak(&seen.incident, seen.incident_width_s)),
+        "wall": shot.wall().map(|wall| peak(&wall, seen.and_then(|seen| seen.wall_width_s))),
+        "reflected": seen
             .and_then(|seen| Some(peak(seen.reflected.as_ref()?, seen.reflected_width_s))),
-        pulse_speed_beads_s: shot.pulse_speed_beads_s,
-        rebound_first_m_s: rebound.and_then(|rebound| Some(rebound.first?.1)),
-        rebound_end_m_s: rebound.and_then(|rebound| rebound.end_m_s),
-        velocity_m_s: shot.velocity_m_s.clone(),
-        duration_s: shot.duration_s,
-        solver: shot.solver.clone(),
-        force_passes: shot.work.force_passes,
-        notes: shot.notes.clone(),
-        warnings: Vec::new(),
-        bodies: Vec::new(),
-        motion: None,
-        energy: None,
-    }
+        "pulse_speed_beads_s": shot.pulse_speed_beads_s,
+        "rebound_first_m_s": rebound.and_then(|rebound| Some(rebound.first?.1)),
+        "rebound_end_m_s": rebound.and_then(|rebound| rebound.end_m_s),
+        "velocity_m_s": shot.velocity_m_s,
+        "duration_s": shot.duration_s,
+        "solver": shot.solver,
+        "force_passes": shot.work.force_passes,
+        "notes": shot.notes,
+    })
 }
 
-fn peak(of: &Maximum, width_s: Option<f64>) -> Peak {
-    Peak { time_s: of.time_s, value_n: of.value, width_s }
+/// A maximum of a signal, with its full width at half maximum.
+fn peak(of: &Maximum, width_s: Option<f64>) -> Json {
+    json!({ "time_s": of.time_s, "value_n": of.value, "width_s": width_s })
 }
 
 /// The bodies in a row, gaps and all, from left to right.
@@ -267,48 +178,47 @@ fn contacts(bodies: &[Body]) -> impl Iterator<Item = usize> {
     bodies.first().map_or(0, |body| body.number)..last
 }
 
-fn motion(trace: Trace, interval_s: f64, plan: &Plan, bodies: &[Body]) -> MotionReply {
+/// Signals in N, none of a wall where there is none; displacements in m, body after body; dynamic
+/// forces in N, contact after contact. The first sample is at 0.
+fn motion(trace: &Trace, interval_s: f64, plan: &Plan, bodies: &[Body]) -> Json {
     let (signals, rest) = trace.columns.split_at(2);
     let (positions, forces) = rest.split_at(bodies.len());
-    MotionReply {
-        interval_s,
-        samples: trace.time_s.len(),
-        sensor_n: Array::of(&signals[0]),
-        wall_n: Array::of(signals[1].iter().filter(|_| has_wall(plan))),
-        displacement_m: Array::of(positions.iter().flatten()),
-        force_n: Array::of(forces.iter().flatten()),
-    }
+    json!({
+        "interval_s": interval_s,
+        "samples": trace.time_s.len(),
+        "sensor_n": Array::of(&signals[0]),
+        "wall_n": Array::of(signals[1].iter().filter(|_| has_wall(plan))),
+        "displacement_m": Array::of(positions.iter().flatten()),
+        "force_n": Array::of(forces.iter().flatten()),
+    })
 }
 
-/// Energy over time, each part that is ever more than a millionth of the whole.
-fn energy(trace: &Trace, shot: &Shot) -> Option<EnergyReply> {
+/// Energy over time in J: curves by name, each that is ever more than a millionth of the whole, which
+/// together are what was put in; and what is missing at the end, over that.
+fn energy(trace: &Trace, shot: &Shot) -> Option<Json> {
     let last = shot.budget.as_ref()?;
-    let mut budgets: Vec<&Budget> = trace.budgets.iter().collect();
-    budgets.push(last);
-    let part = |name: &str, of: &dyn Fn(&Budget) -> f64| {
-        (name.to_owned(), budgets.iter().map(|budget| of(budget)).collect::<Vec<f64>>())
+    let budgets: Vec<&Budget> = trace.budgets.iter().chain([last]).collect();
+    let part = |name: &'static str, of: &dyn Fn(&Budget) -> f64| {
+        (name, budgets.iter().map(|budget| of(budget)).collect::<Vec<f64>>())
     };
     let lost = (0..last.dissipated.len()).map(|at| {
         let of = move |budget: &Budget| budget.dissipated.get(at).map_or(0.0, |line| line.energy_j);
         part(last.dissipated[at].law, &of)
     });
-    let held =
-        [part("kinetic", &|budget| budget.kinetic_j), part("elastic", &|budget| budget.elastic_j)];
+    let held = [part("kinetic", &|b| b.kinetic_j), part("elastic", &|b| b.elastic_j)];
     let rest = [
-        part("clipped", &|budget| budget.clipped_j),
-        part("gravity", &|budget| budget.gravity_j),
-        part("preload", &|budget| budget.preload_j),
-        part("stop", &|budget| budget.stop_j),
+        part("clipped", &|b| b.clipped_j),
+        part("gravity", &|b| b.gravity_j),
+        part("preload", &|b| b.preload_j),
+        part("stop", &|b| b.stop_j),
     ];
-    let all = held.into_iter().chain(lost).chain(rest);
     let matters = |curve: &[f64]| curve.iter().any(|energy| energy.abs() > 1e-6 * last.input_j);
-    Some(EnergyReply {
-        time_s: Array(budgets.iter().map(|budget| budget.time_s as f32).collect()),
-        input_j: last.input_j,
-        parts: all
-            .filter(|(_, curve)| matters(curve))
-            .map(|(name, curve)| (name, Array::of(&curve)))
-            .collect(),
-        relative_residual: last.relative_residual(),
-    })
+    let all = held.into_iter().chain(lost).chain(rest).filter(|(_, curve)| matters(curve));
+    let parts = all.map(|(name, curve)| (name, Array::of(&curve))).collect::<Vec<_>>();
+    Some(json!({
+        "time_s": Array(budgets.iter().map(|budget| budget.time_s as f32).collect()),
+        "input_j": last.input_j,
+        "parts": parts,
+        "relative_residual": last.relative_residual(),
+    }))
 }

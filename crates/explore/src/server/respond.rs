@@ -3,7 +3,7 @@
 use super::Server;
 use super::assets::{ASSETS, PAGE};
 use super::jobs::Job;
-use crate::engine::{Refusal, Reply, Request, answer};
+use crate::engine::{Refusal, Request, answer};
 use crate::respond::Response as Answer;
 use http_body_util::{BodyExt, Full, LengthLimitError, Limited};
 use hyper::body::{Body, Bytes, Incoming};
@@ -13,7 +13,7 @@ use hyper::header::{
 };
 use hyper::{Method, Response, StatusCode};
 use serde::Serialize;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::convert::Infallible;
 use std::sync::Arc;
 use std::time::Duration;
@@ -133,7 +133,7 @@ async fn compute(server: &Server, request: hyper::Request<Incoming>, lane: &str)
 }
 
 /// Answers on a thread of its own, so that this one goes on serving.
-async fn run(server: &Server, job: &Job<'_>, request: Request) -> Result<Reply, Refusal> {
+async fn run(server: &Server, job: &Job<'_>, request: Request) -> Result<Value, Refusal> {
     let Some(place) = job.turn().await else {
         return Err(Refusal::Stopped);
     };

@@ -124,8 +124,11 @@ fn posed(
     let freed = renamed(&arguments.freed, own, &against.free, &experiment);
     let model = inference::model(&experiment, &modelled, &freed)?;
     let parameters = model.numbers.parameters(&data.speeds_m_s());
-    let names: Vec<&str> = parameters.iter().map(|p| p.name.as_str()).collect();
-    let posed = inference::problem(model, data, &about(freed, &names))?;
+    let is_there = |one: &Assignment| {
+        let mut names = parameters.iter().map(|p| &p.name);
+        names.any(|name| is_meant(&one.name, name)).then(|| one.clone())
+    };
+    let posed = inference::problem(model, data, &freed.each(is_there))?;
     Ok((posed, without))
 }
 
@@ -155,20 +158,8 @@ fn renamed(known: &Freed, own: &Experiment, free: &[String], alternative: &Exper
             .filter(|other| *other == number || same_number((own, number), (alternative, other)));
         Some(format!("{}{}", same.next()?, &given.name[number.len()..]))
     };
-    let all = |given: &[Assignment]| {
-        let given = given
-            .iter()
-            .filter_map(|one| Some(Assignment { name: name(one)?, text: one.text.clone() }));
-        given.collect()
-    };
-    Freed {
-        free: free.to_vec(),
-        start: all(&known.start),
-        bounds: all(&known.bounds),
-        prior: all(&known.prior),
-        scale: all(&known.scale),
-        systematic: known.systematic.clone(),
-    }
+    let freed = Freed { free: free.to_vec(), ..known.clone() };
+    freed.each(|given| Some(Assignment { name: name(given)?, text: given.text.clone() }))
 }
 
 /// A number's name without how it depends on speed.
@@ -180,23 +171,6 @@ fn plain(name: &str) -> &str {
 fn is_of(name: &str, number: &str) -> bool {
     let rest = name.strip_prefix(number);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '@']))
-}
-
-/// What is said of parameters that there are.
-fn about(freed: Freed, parameters: &[&str]) -> Freed {
-    let known = |given: Vec<Assignment>| -> Vec<Assignment> {
-        let is_known =
-            |one: &Assignment| parameters.iter().any(|parameter| is_meant(&one.name, parameter));
-        given.into_iter().filter(is_known).collect()
-    };
-    Freed {
-        free: freed.free,
-        start: known(freed.start),
-        bounds: known(freed.bounds),
-        prior: known(freed.prior),
-        scale: known(freed.scale),
-        systematic: freed.systematic,
-    }
 }
 
 /// Relative accuracy of other models' times of flight.

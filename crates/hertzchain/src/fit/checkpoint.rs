@@ -13,16 +13,12 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The file of the options.
 const OPTIONS: &str = "options.json";
 
 /// The option that may differ where a run is resumed: how far it goes.
 const MAY_DIFFER: &str = "steps";
 
 /// Writes the options of a new run; for a resumed one checks that they are the same.
-///
-/// # Errors
-/// Options that differ from those of the run before, by name; a folder that can't be used.
 pub(super) fn check_options(arguments: &Arguments) -> Result<(), Failure> {
     let Some(out) =
         arguments.out.as_deref().filter(|_| arguments.method == options::Method::Posterior)
@@ -69,7 +65,6 @@ fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Failure> {
     written.map_err(|error| Failure::Ours(error.to_string()))
 }
 
-/// Digits of a hash.
 const HASH: usize = 64;
 
 /// Bytes with their hash after them, in hexadecimal digits.

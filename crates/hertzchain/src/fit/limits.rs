@@ -88,7 +88,6 @@ fn limit(found: &Profile, is_above: bool) -> Option<Limit> {
 }
 
 impl Limit {
-    /// "at most" or "at least".
     pub(crate) const fn side(&self) -> &'static str {
         match self.is_above {
             true => "at most",

@@ -257,7 +257,6 @@ fn finer(problem: CurveProblem) -> CurveProblem {
     problem.with_accuracy(accuracy)
 }
 
-/// How a fit was asked for.
 fn asked(arguments: &Arguments) -> Fitting {
     Fitting {
         loss: match arguments.robust {
@@ -314,8 +313,7 @@ pub fn fit_result(problem: CurveProblem, arguments: &Arguments) -> Result<FitRes
     let (problem, fit) = best_fit(problem, 0, &asked(arguments), finer)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more(&problem, (&fit, &covariance), arguments)?;
-    let found = concluded(&problem, &problem, (fit, covariance, more), arguments)?;
-    reported(problem, found)
+    concluded(problem, None, (fit, covariance, more), arguments)
 }
 
 /// The same where `computed` has the problem's residuals from elsewhere, such as
@@ -334,28 +332,21 @@ pub fn fit_from_other_starts(
     let covariance = Covariance::new(computed.parameters(), &fit);
     let more =
         more::more_of(computed, computed, (&fit, &covariance), Curves::Computed(None), arguments)?;
-    let found = concluded(&problem, computed, (fit, covariance, more), arguments)?;
-    reported(problem, found)
+    concluded(problem, Some(computed), (fit, covariance, more), arguments)
 }
 
-/// What else takes many curves: limits at bounds, and other models.
+/// Adds what else takes many curves, limits at bounds and other models, by residuals from elsewhere
+/// if there are such; and the curves at the best fit.
 fn concluded(
-    problem: &CurveProblem,
-    computed: &dyn Problem,
-    (fit, covariance, more): (Fit, Covariance, More),
-    arguments: &Arguments,
-) -> Result<(Inferred, Option<AlternativeModels>), Failure> {
-    let label = |at: usize| problem.residual_label(at);
-    let goodness = Goodness::new(problem, &fit);
-    let inferred = Inferred::new(computed, (fit, covariance, more), goodness, label)?;
-    let alternatives = alternatives::alternatives((problem, computed), &inferred.fit, arguments)?;
-    Ok((inferred, alternatives))
-}
-
-fn reported(
     problem: CurveProblem,
-    (inferred, alternatives): (Inferred, Option<AlternativeModels>),
+    computed: Option<&dyn Problem>,
+    found: (Fit, Covariance, More),
+    arguments: &Arguments,
 ) -> Result<FitResult, Failure> {
+    let computed = computed.unwrap_or(&problem);
+    let goodness = Goodness::new(&problem, &found.0);
+    let inferred = Inferred::new(computed, found, goodness, |at| problem.residual_label(at))?;
+    let alternatives = alternatives::alternatives((&problem, computed), &inferred.fit, arguments)?;
     let (fit, covariance) = (&inferred.fit, &inferred.covariance);
     let all = &problem.curves;
     let alone = all.len() == 1 && fit.ending.converged() && !inferred.is_closed_by_priors();

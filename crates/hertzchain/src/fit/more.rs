@@ -88,9 +88,6 @@ pub(super) fn more(
 }
 
 /// As the method asks: samples `problem`, profiles `exact`; `curves` says where its curves come from.
-///
-/// # Errors
-/// What is in the way.
 pub(super) fn more_of(
     problem: &dyn Problem,
     exact: &dyn Problem,

@@ -149,7 +149,6 @@ fn spread(records: Vec<Pulses>, most: usize) -> Vec<Pulses> {
     all.filter(|(at, _)| count <= most || kept(at)).map(|(_, r)| r).collect()
 }
 
-/// An amplifier's filters.
 fn respond() -> Respond {
     Respond::new(|numbers, signal, interval_s| {
         let plain =
@@ -261,7 +260,6 @@ pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
     all.collect()
 }
 
-/// One line a mean of samples.
 pub(crate) fn pulses_csv(shown: &[Shown<'_>]) -> String {
     let titles = "source,channel,time_s,measured_V=measured_v,error_V=error_v,fitted_V=fitted_v";
     view(csv::list(&rows_json(shown)), &columns(titles))

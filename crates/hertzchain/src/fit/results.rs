@@ -5,7 +5,7 @@ use super::more::{Curves, More};
 use super::{FitResult, Inferred, Limit, TableFit};
 use crate::inference::{assumed, held_loads, references_json, unit_changes, widened};
 use crate::options::FitOptions as Arguments;
-use hertzchain_infer::{Advice, End, Observable, Parameter, Prior, Profile, Prospect};
+use hertzchain_infer::{Advice, End, Observable, Parameter, Profile, Prospect};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
@@ -51,7 +51,6 @@ fn table(of: &TableFit<'_>) -> Value {
     })
 }
 
-/// What further data would determine.
 fn prospects(advice: &Advice) -> Value {
     let finite = |x: f64| x.is_finite().then_some(x);
     let one = |prospect: &Prospect| {
@@ -76,6 +75,8 @@ pub fn joined(mut one: Value, other: Value) -> Value {
 /// What any fit determines.
 pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
     let (fit, goodness) = (&fit_result.fit, &fit_result.goodness);
+    let correlation = |i: usize, j: usize| fit_result.covariance.correlation(i, j);
+    let row = |i: usize| (0..fit.point.len()).map(|j| correlation(i, j)).collect::<Vec<_>>();
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "options": crate::options::recorded(arguments),
@@ -88,7 +89,7 @@ pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
         })),
         "parameters": parameters(fit_result),
         "covariance": fit_result.covariance.matrix,
-        "correlation": correlations(fit_result),
+        "correlation": (0..fit.point.len()).map(row).collect::<Value>(),
         "converged": fit.ending.converged(),
         "starts_agreeing": fit.agreeing_starts(),
         "starts": fit.starts.iter().map(|start| json!({
@@ -106,10 +107,7 @@ pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
         "largest_residual": goodness.largest.as_ref().map(|found| json!({
             "what": found.label, "standard_errors": found.sigmas,
         })),
-        "runs": goodness.runs.map(|r| json!({
-            "count": r.count, "expected": r.expected,
-            "probability_fewer": r.probability_fewer, "probability_more": r.probability_more,
-        })),
+        "runs": goodness.runs,
         "jacobian_disagreement": fit.jacobian.disagreement,
         "singular_values": fit_result.identifiability.singular_values,
         "directions": fit_result.identifiability.directions,
@@ -123,39 +121,18 @@ pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
 }
 
 fn parameters(fit_result: &Inferred) -> Value {
-    let parameters = fit_result.parameters.iter().enumerate();
     let one = |(at, parameter): (usize, &Parameter)| {
-        let finite = |x: f64| x.is_finite().then_some(x);
-        json!({
-            "name": parameter.name,
-            "unit": parameter.unit,
-            "value": fit_result.fit.point[at],
-            "standard_error": finite(fit_result.standard_error(at)).filter(|_| !fit_result.fit.is_bound(at)),
-            "limit": fit_result.limit(at).map(Limit::json),
-            "determined": fit_result.standard_error(at).is_finite(),
-            "at_bound": fit_result.fit.is_bound(at),
-            "start": parameter.start,
-            "lower": finite(parameter.lower),
-            "upper": finite(parameter.upper),
-            "scale": parameter.scale,
-            "prior": prior(parameter.prior),
-        })
+        let sd = fit_result.standard_error(at);
+        let is_bound = fit_result.fit.is_bound(at);
+        let mut all = json!(parameter);
+        all["value"] = fit_result.fit.point[at].into();
+        all["standard_error"] = (!is_bound).then_some(sd).into();
+        all["limit"] = json!(fit_result.limit(at).map(Limit::json));
+        all["determined"] = sd.is_finite().into();
+        all["at_bound"] = is_bound.into();
+        all
     };
-    parameters.map(one).collect()
-}
-
-fn prior(prior: Prior) -> Value {
-    match prior {
-        Prior::Flat => Value::Null,
-        Prior::Normal { mean, sd } => json!({ "mean": mean, "sd": sd }),
-        Prior::LogNormal { median, ln_sd } => json!({ "median": median, "ln_sd": ln_sd }),
-    }
-}
-
-fn correlations(fit_result: &Inferred) -> Value {
-    let count = fit_result.fit.point.len();
-    let row = |i: usize| (0..count).map(move |j| fit_result.covariance.correlation(i, j));
-    (0..count).map(|i| row(i).collect::<Vec<_>>()).collect::<Vec<_>>().into()
+    fit_result.parameters.iter().enumerate().map(one).collect()
 }
 
 fn end(end: End) -> Value {
@@ -231,12 +208,11 @@ fn comparison(alternatives: &AlternativeModels) -> Value {
         "models": found.map(|_| models(alternatives)),
         "favoured": found.and_then(|found| found.favoured).map(|at| &alternatives.all[at].name),
         "sentence": found.map(|found| &found.sentence),
-        "without_minimum": lost(alternatives),
+        "without_minimum": without_minimum(alternatives),
     })
 }
 
-/// Models that found no minimum.
-pub(super) fn lost(alternatives: &AlternativeModels) -> Vec<Value> {
+pub(super) fn without_minimum(alternatives: &AlternativeModels) -> Vec<Value> {
     let one = |lost: &Unfitted| json!({ "model": lost.name, "chi_square": lost.chi_square, "why": lost.why });
     alternatives.lost.iter().map(one).collect()
 }

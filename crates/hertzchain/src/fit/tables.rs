@@ -24,7 +24,7 @@ const COMPARISON: &str = "model,free,chi_square,freedom,probability,aic,aicc,bic
 /// Every table of a fit of a curve, whose JSON is `found`.
 pub fn tables(fit_result: &FitResult, found: &Value) -> Vec<Table> {
     let rows = results::rows_json(fit_result);
-    let several = (fit_result.curves.len() > 1).then_some(",file").unwrap_or_default();
+    let several = if fit_result.curves.len() > 1 { ",file" } else { "" };
     let titles = "line,speed_m_s,observable,measured,error,fitted,fitted_error,residual".to_owned();
     let mut all = vec![("fit.csv", view(list(&rows), &columns(&(titles + several))))];
     all.extend(tables_of_any(found, &fit_result.inferred.more));
@@ -150,6 +150,6 @@ fn comparison(alternatives: &AlternativeModels) -> String {
             line["free"] = criteria.parameters.into();
         }
     }
-    lines.extend(results::lost(alternatives));
+    lines.extend(results::without_minimum(alternatives));
     view(&lines, &columns(COMPARISON))
 }

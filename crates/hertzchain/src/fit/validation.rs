@@ -4,10 +4,6 @@ use super::checkpoint::check_options;
 use super::{Arguments, CHAIN};
 use crate::failure::Failure;
 
-/// Of a fit of a table.
-///
-/// # Errors
-/// An option that would say nothing, why, and what to do.
 pub(super) fn of_table(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = &arguments.recorded;
     let why = "is for recordings, and DATA is a table of times of flight: leave it out";
@@ -22,10 +18,6 @@ pub(super) fn of_table(arguments: &Arguments) -> Result<(), Failure> {
     of_any(arguments)
 }
 
-/// Of a fit of recordings.
-///
-/// # Errors
-/// As [`of_table`].
 pub(super) fn of_recordings(arguments: &Arguments) -> Result<(), Failure> {
     let why = "compares models of a table of times of flight, and DATA are recordings: take their times by \
                `hertzchain measure` and compare models of speeds.csv, or fit the other model to the recordings by itself";

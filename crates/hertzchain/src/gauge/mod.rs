@@ -8,7 +8,7 @@ pub use self::{results::json, tables::tables};
 use crate::failure::Failure;
 use crate::inference::{self, user, wanted};
 use crate::input::assumed_preset;
-use crate::options::{CurveOptions as Measured, GaugeOptions as Arguments};
+use crate::options::GaugeOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
 use hertzchain_infer::gauge::{Chains, Gauge, Oil, Verdict, WetRow, known_oils, oils};
@@ -73,9 +73,6 @@ pub fn gauge(
 const USUAL: [&str; 2] = ["pump", "dry"];
 
 /// The wet chain and the dry one, each in the case of its data.
-///
-/// # Errors
-/// A model that can't be read or has no such case.
 pub(crate) fn models(arguments: &Arguments, cases: [&str; 2]) -> Result<[Experiment; 2], Failure> {
     let (wet, dry) = (arguments.model.as_deref(), arguments.dry_model.as_deref());
     Ok([
@@ -94,15 +91,6 @@ pub(crate) fn assumed_models(wet_is_named: bool, dry_is_named: bool) -> Option<S
         .then(|| assumed_preset("model of the dry chain", "row of 40 beads", USUAL[1], dry));
     let all: Vec<String> = wet.into_iter().chain(dry).collect();
     (!all.is_empty()).then(|| all.join(". "))
-}
-
-/// The curve of a file, of this case or of the one that holds for all.
-///
-/// # Errors
-/// A table that can't be used.
-pub fn data(file: &Path, measured: &Measured, case: Option<&str>) -> Result<Data, Failure> {
-    let case = case.map(str::to_owned).or_else(|| measured.case.clone());
-    inference::data_of(file, measured, case)
 }
 
 /// The program's oils and those of the user's table.

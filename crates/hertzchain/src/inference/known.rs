@@ -73,9 +73,6 @@ pub(crate) fn is_meant(name: &str, parameter: &str) -> bool {
 }
 
 /// A systematic error: its name and standard deviation in SI, or in percent of the number.
-///
-/// # Errors
-/// No such number, or no positive size.
 pub(crate) fn systematic(
     experiment: &Experiment,
     one: &Assignment,

@@ -11,7 +11,7 @@ pub use self::{
 pub(crate) use known::{is_meant, systematic};
 pub(crate) use reference::references_json;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, unread};
 use crate::input;
 use crate::options::Input;
 use crate::options::{
@@ -46,9 +46,13 @@ pub fn wanted() -> Result<(), Failure> {
     }
 }
 
-/// A measured curve with what is to be used of it.
-pub fn data(file: &Path, measured: &Measured) -> Result<Data, Failure> {
-    data_of(file, measured, measured.case.clone())
+/// A measured curve with what is to be used of it: of this case, or of the one that an option names.
+///
+/// # Errors
+/// A table that can't be used.
+pub fn data(file: &Path, measured: &Measured, case: Option<&str>) -> Result<Data, Failure> {
+    let case = case.map(str::to_owned).or_else(|| measured.case.clone());
+    data_of(file, measured, case)
 }
 
 /// Whether a file is a table of curves: text whose first line, comments aside, names a column of
@@ -58,17 +62,14 @@ pub fn data(file: &Path, measured: &Measured) -> Result<Data, Failure> {
 /// # Errors
 /// A file that can't be read.
 pub fn is_table(file: &Path, with_options_of_recordings: bool) -> Result<bool, Failure> {
-    let unread = |error: &dyn std::fmt::Display| {
-        Failure::User(format!("{} can't be read: {error}", file.display()))
-    };
     if file.is_dir() {
         return Ok(false);
     }
     let mut begin = Vec::new();
-    let copy = peek(file).map_err(|error| unread(&error))?;
-    let mut opened = fs::File::open(copy).map_err(|error| unread(&error))?;
+    let copy = peek(file).map_err(unread(file))?;
+    let mut opened = fs::File::open(copy).map_err(unread(file))?;
     let probe = opened.by_ref().take(PROBE).read_to_end(&mut begin);
-    probe.map_err(|error| unread(&error))?;
+    probe.map_err(unread(file))?;
     let binary = begin.contains(&0) || std::str::from_utf8(&begin).is_err();
     let text = String::from_utf8_lossy(&begin);
     let mut lines = text.lines().map(str::trim);
@@ -92,8 +93,7 @@ pub(crate) fn data_of(
     measured: &Measured,
     case: Option<String>,
 ) -> Result<Data, Failure> {
-    let text = text(file)
-        .map_err(|error| Failure::User(format!("{} can't be read: {error}", file.display())))?;
+    let text = text(file).map_err(unread(file))?;
     parsed(&file.display().to_string(), &text, measured, case)
 }
 
@@ -114,18 +114,14 @@ pub fn parsed(
             speed_m_s: measured.speed_error.map(|error| error.0),
             time_s: measured.tof_error.map(|error| error.0),
             ratio: measured.ratio_error.map(|error| error.0),
-            scatter: scatter(measured),
+            scatter: match measured.error_shots {
+                None => Scatter::AsTold,
+                Some(ErrorShots(None)) => Scatter::Known,
+                Some(ErrorShots(Some(shots))) => Scatter::Of(shots),
+            },
         },
     };
     Data::parse(name, text, &selection).map_err(user)
-}
-
-fn scatter(measured: &Measured) -> Scatter {
-    match measured.error_shots {
-        None => Scatter::AsTold,
-        Some(ErrorShots::Known) => Scatter::Known,
-        Some(ErrorShots::Of(shots)) => Scatter::Of(shots),
-    }
 }
 
 /// What is assumed of data that do not say all: for warnings.
@@ -154,7 +150,6 @@ pub fn widened(data: &Data) -> Option<String> {
     ))
 }
 
-/// Lines as a warning names them.
 fn which(data: &Data, lines: &[u64]) -> Option<String> {
     match lines {
         [] => None,
@@ -226,7 +221,6 @@ fn listed(lines: &[u64]) -> String {
     }
 }
 
-/// Lines that a warning names.
 const LISTED: usize = 12;
 
 /// A model's experiment, in the case of this name if it has one.
@@ -235,17 +229,14 @@ pub(crate) fn opened(
     preset: &Option<String>,
     case: &str,
 ) -> Result<Experiment, Failure> {
-    opened_or((file, preset), USUAL, case)
+    opened_or((file, preset), input::USUAL, case)
 }
-
-/// The preset where no model is named.
-const USUAL: &str = "dry";
 
 /// That a model which was not named is the paper's dry chain: the first line of what comes of it.
 pub(crate) fn assumed_model(modelled: &Modelled) -> Option<String> {
     let is_named = modelled.model.is_some() || modelled.preset.is_some();
     let options = "--model FILE or --preset NAME";
-    (!is_named).then(|| input::assumed_preset("model", "dry chain", USUAL, options))
+    (!is_named).then(|| input::assumed_preset("model", "dry chain", input::USUAL, options))
 }
 
 /// The same with a preset where neither is named.

@@ -7,7 +7,7 @@ pub use results::{json, write_json};
 #[cfg(not(target_family = "wasm"))]
 pub(crate) use results::{law, row, shot};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, unread};
 use crate::options::{
     Corner, CurveOptions, Filter, Input, MeasureOptions as Arguments, MethodName,
     PickOptions as Picking,
@@ -47,9 +47,7 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Ve
     let is_list = |file: &PathBuf| list.is_some() && file.canonicalize().ok() == list;
     for path in given {
         if !path.is_dir() {
-            files.push(seekable(path).map_err(|error| {
-                Failure::User(format!("{} can't be read: {error}", path.display()))
-            })?);
+            files.push(seekable(path).map_err(unread(path))?);
             continue;
         }
         let (found, mut others) = inside(path)?;
@@ -62,9 +60,6 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Ve
 }
 
 /// Recordings in a folder, and what else is there, in order of their names.
-///
-/// # Errors
-/// A folder that can't be read.
 pub(crate) fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
     let refused = |error| Failure::User(format!("{}: {error}", folder.display()));
     let entries = fs::read_dir(folder).map_err(refused)?;
@@ -90,7 +85,6 @@ fn inside(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
     }
 }
 
-/// Most names in a note.
 const MOST_NAMES: usize = 8;
 
 /// The note on what a folder has beside recordings, but for hidden files.
@@ -330,7 +324,6 @@ fn method(picking: &Picking) -> Method {
     }
 }
 
-/// How shots become curves.
 pub(crate) fn grouping(arguments: &Arguments) -> Grouping {
     Grouping {
         gap_m_s: arguments.speed_gap.0,

@@ -2,7 +2,7 @@
 
 use hertzchain_measure::signal::{Estimate, FitError, Picked, PowerLaw, PulseKind, Ratio, Summary};
 use hertzchain_measure::{
-    Case, Curves, Measurement, Note, Shot, SpeedRow, UnmeasuredSpeed, WetOverDry,
+    Case, Curves, MeasureError, Measurement, Note, Shot, SpeedRow, UnmeasuredSpeed, WetOverDry,
 };
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Value, json};
@@ -45,20 +45,23 @@ impl Serialize for Report<'_> {
         all.serialize_entry("lost", &Each(&curves.unmeasured, unmeasured))?;
         all.serialize_entry("notes", &Each(&measured.notes, note))?;
         all.serialize_entry("ratios", &Each(&curves.ratios, wet_over_dry))?;
-        all.serialize_entry("refused", &Each(&measured.refused, |one| json!(one.to_string())))?;
-        let counted = if curves.keep_dubious { shot_of_all } else { shot };
-        all.serialize_entry("shots", &Each(&measured.shots, counted))?;
+        all.serialize_entry(
+            "refused",
+            &Each(&measured.refused, |one: &MeasureError| json!(one.to_string())),
+        )?;
+        let shot = |of: &_| shot(of, curves.keep_dubious);
+        all.serialize_entry("shots", &Each(&measured.shots, shot))?;
         all.serialize_entry("unmatched", &measured.unmatched)?;
         all.end()
     }
 }
 
 /// A list of which one member at a time is JSON.
-struct Each<'a, T>(&'a [T], fn(&T) -> Value);
+struct Each<'a, T, F: Fn(&T) -> Value>(&'a [T], F);
 
-impl<T> Serialize for Each<'_, T> {
+impl<T, F: Fn(&T) -> Value> Serialize for Each<'_, T, F> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(self.0.iter().map(self.1))
+        serializer.collect_seq(self.0.iter().map(&self.1))
     }
 }
 
@@ -84,14 +87,15 @@ fn estimate(of: Estimate) -> Value {
     json!({ "value": of.value, "sigma": of.sigma })
 }
 
-pub(crate) fn shot(shot: &Shot) -> Value {
+/// A shot, where dubious ones count or not.
+pub(crate) fn shot(shot: &Shot, keep_dubious: bool) -> Value {
     let mut all = json!({
         "file": shot.file.display().to_string(),
         "shot": shot.shot,
         "case": shot.case,
         "speed_m_s": shot.speed_m_s.map(estimate),
         "flags": shot.remarks(),
-        "not_counted": shot.reasons(false),
+        "not_counted": shot.reasons(keep_dubious),
     });
     match &shot.flight {
         Err(error) => all["missing"] = json!(error.to_string()),
@@ -114,13 +118,6 @@ pub(crate) fn shot(shot: &Shot) -> Value {
             all["reflected"] = back.map_or(Value::Null, |back| pulse(back, PulseKind::Reflected));
         }
     }
-    all
-}
-
-/// A shot where dubious ones count.
-fn shot_of_all(of: &Shot) -> Value {
-    let mut all = shot(of);
-    all["not_counted"] = json!(of.reasons(true));
     all
 }
 

@@ -20,15 +20,11 @@ pub struct Given {
 
 impl Given {
     /// Returns a speed; a plain number is in m/s, or dimensionless.
-    ///
-    /// # Errors
-    /// Text that is no positive speed.
     pub(crate) fn speed(text: &str) -> Result<Self, StudyError> {
         Ok(Self {
             text: text.trim().to_owned(),
-            value: parse_speed(text)?,
             has_unit: has_unit(text),
-            asks_unit: None,
+            ..Self::plain(parse_speed(text)?)
         })
     }
 
@@ -38,24 +34,16 @@ impl Given {
     }
 
     /// Returns a time; a plain number only suits a dimensionless experiment.
-    ///
-    /// # Errors
-    /// Text that is no positive time.
-    pub(crate) fn time(text: &str) -> Result<Self, String> {
-        Ok(Self {
-            text: text.trim().to_owned(),
-            value: parse_time(text).map_err(|error| error.to_string())?,
-            has_unit: has_unit(text),
-            asks_unit: Some("2 ms"),
-        })
+    pub(crate) fn time(text: &str) -> Result<Self, StudyError> {
+        let asks_unit = Some("2 ms");
+        let (has_unit, value) = (has_unit(text), parse_time(text)?);
+        Ok(Self { text: text.trim().to_owned(), value, has_unit, asks_unit })
     }
 
-    /// The value in SI, or dimensionless.
     pub(crate) const fn value(&self) -> f64 {
         self.value
     }
 
-    /// As it was written.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }

@@ -235,6 +235,16 @@ impl FitOptions {
     }
 }
 
+impl ParameterOptions {
+    /// The same with what `of` makes of each thing known of a parameter, or without it.
+    pub(crate) fn each(mut self, of: impl Fn(&Assignment) -> Option<Assignment>) -> Self {
+        for known in [&mut self.start, &mut self.bounds, &mut self.prior, &mut self.scale] {
+            *known = known.iter().filter_map(&of).collect();
+        }
+        self
+    }
+}
+
 impl RecordOptions {
     /// Whether an option says something of how files are to be read as recordings.
     pub(crate) fn describes_files(&self) -> bool {

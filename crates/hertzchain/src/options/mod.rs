@@ -27,26 +27,7 @@ mod measure;
 mod simulate;
 mod values;
 
-pub use self::{
-    given::{Given, check_speeds},
-    infer::{
-        CurveOptions, DesignOptions, Filter, FitOptions, GaugeOptions, Method, ModelOptions,
-        ParameterOptions, RecordOptions, What,
-    },
-    measure::{
-        LiveOptions, MeasureOptions, MethodName, PickOptions, ReadingOptions, RowsAre, SampleType,
-        Way,
-    },
-    simulate::{
-        CampaignOptions, CheckOptions, ErrorControl, Input, Pick, ShotOptions, SimulationOptions,
-        Solver, SweepOptions,
-    },
-    values::{
-        Accuracy, Against, Also, Assignment, Corner, Cost, Count, Delay, ErrorShots, Few,
-        Frequency, Positive, Preload, Sensitivity, Share, Speed, Threads, Time, TimeUnit, Voltage,
-        WayKind,
-    },
-};
+pub use self::{given::*, infer::*, measure::*, simulate::*, values::*};
 pub(crate) use given::has_unit;
 
 use crate::failure::Failure;

@@ -97,7 +97,6 @@ macro_rules! numbers {
     )*};
 }
 
-/// A finite number in SI.
 fn number(text: &str, unit: &str) -> Option<f64> {
     parse_in(text, unit).ok().filter(|value| value.is_finite())
 }
@@ -154,52 +153,42 @@ numbers! {
     };
 }
 
-/// The number of shots from whose scatter standard errors come.
+/// The number of shots from whose scatter standard errors come; `None` if errors are known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ErrorShots {
-    /// Errors are known.
-    Known,
-    /// Errors are estimated from this many shots.
-    Of(u32),
-}
+pub struct ErrorShots(pub Option<u32>);
 
 impl FromStr for ErrorShots {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text.trim() {
-            "known" => Ok(Self::Known),
-            text => text.parse().ok().filter(|count| *count >= FEWEST_SHOTS).map(Self::Of).ok_or_else(|| {
-                format!(
-                    "expected a whole number from {FEWEST_SHOTS}, or known: the scatter of fewer shots gives no \
-                     error of a row; take one over many rows"
-                )
-            }),
-        }
+        let count = || text.trim().parse().ok().filter(|count| *count >= FEWEST_SHOTS);
+        named(text, "known", count).map(Self).ok_or_else(|| {
+            format!(
+                "expected a whole number from {FEWEST_SHOTS}, or known: the scatter of fewer shots gives no error of a \
+                 row; take one over many rows"
+            )
+        })
     }
 }
 
-/// A preload force that could be tried.
+/// A preload force in N that could be tried; `None` for none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Preload {
-    /// No preload.
-    Nothing,
-    /// A force in N.
-    Of(f64),
-}
+pub struct Preload(pub Option<f64>);
 
 impl FromStr for Preload {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let force = || number(text, "N").filter(|force| *force >= 0.0).map(Self::Of);
-        match text.trim() {
-            "none" => Ok(Self::Nothing),
-            _ => force().ok_or_else(|| {
-                "expected a force that is not negative, such as 0.24N, or none".to_owned()
-            }),
-        }
+        let force = || number(text.trim(), "N").filter(|force| *force >= 0.0);
+        named(text, "none", force).map(Self).ok_or_else(|| {
+            "expected a force that is not negative, such as 0.24N, or none".to_owned()
+        })
     }
+}
+
+/// `Some(None)` for a name, else a value if there is one.
+fn named<T>(text: &str, name: &str, value: impl FnOnce() -> Option<T>) -> Option<Option<T>> {
+    if text.trim() == name { Some(None) } else { value().map(Some) }
 }
 
 /// A number of the model and the text of its value.
@@ -312,19 +301,13 @@ impl FromStr for Cost {
 
 impl Display for ErrorShots {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Known => write!(f, "known"),
-            Self::Of(shots) => write!(f, "{shots}"),
-        }
+        self.0.map_or("known".to_owned(), |shots| shots.to_string()).fmt(f)
     }
 }
 
 impl Display for Preload {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Nothing => write!(f, "none"),
-            Self::Of(force_n) => write!(f, "{force_n}"),
-        }
+        self.0.map_or("none".to_owned(), |force_n| force_n.to_string()).fmt(f)
     }
 }
 

@@ -30,7 +30,6 @@ pub(crate) struct Program {
     pub verb: Option<Verb>,
 }
 
-/// What the environment can change.
 const ENVIRONMENT: &str = "Environment:\n  HERTZCHAIN_INSTRUCTION_SET  vector instructions of ensembles, by name: \
 see `hertzchain --version --verbose`";
 
@@ -83,7 +82,6 @@ pub(crate) enum Verb {
     },
 }
 
-/// Arguments of `merge`.
 #[derive(Debug, Args)]
 pub(crate) struct Merge {
     /// Folders with shards, as `sweep --shard` or `campaign --shard` have written them
@@ -94,7 +92,6 @@ pub(crate) struct Merge {
     pub out: PathBuf,
 }
 
-/// Arguments of `explore`.
 #[cfg(feature = "explore")]
 #[derive(Debug, Args)]
 pub(crate) struct Explore {
@@ -109,7 +106,6 @@ pub(crate) struct Explore {
     pub no_browser: bool,
 }
 
-/// Arguments of `laws`.
 #[derive(Debug, Args)]
 pub(crate) struct LawsArguments {
     /// Only this law
@@ -119,14 +115,12 @@ pub(crate) struct LawsArguments {
     pub json: bool,
 }
 
-/// Arguments of `presets`.
 #[derive(Debug, Args)]
 pub(crate) struct Presets {
     /// Print this one's file, to start your own from
     pub name: Option<String>,
 }
 
-/// Arguments of `reproduce`.
 #[derive(Debug, Args)]
 pub(crate) struct Reproduce {
     /// Folder to write into

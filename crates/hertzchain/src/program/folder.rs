@@ -1,7 +1,6 @@
 //! An output folder whose files are there whole or not at all.
 
-use crate::program::failure::Failure;
-use crate::program::print;
+use crate::program::{Failure, print};
 use hertzchain_figures::Figure;
 use hertzchain_measure::records::Files;
 use std::io::{self, Write};
@@ -63,20 +62,17 @@ impl Folder {
         Failure::Ours(format!("cannot write {}: {error}; {left}", path.display()))
     }
 
-    /// Writes tables, each under its name.
     pub(crate) fn tables(&mut self, tables: &[(&str, String)]) -> Result<(), Failure> {
         let mut tables = tables.iter();
         tables.try_for_each(|(name, text)| self.write(name, text.as_bytes()))
     }
 
-    /// Writes a figure as SVG and PNG.
     pub(crate) fn figure(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
         self.write(&format!("{name}.svg"), figure.svg().as_bytes())?;
         let png = figure.png(DPI).map_err(|error| Failure::Ours(format!("{name}.png: {error}")))?;
         self.write(&format!("{name}.png"), &png)
     }
 
-    /// Where it is.
     pub(crate) fn path(&self) -> &Path {
         self.0.folder()
     }
@@ -92,7 +88,6 @@ impl Folder {
         Ok(())
     }
 
-    /// Names of the files.
     pub(crate) fn names(&self) -> Vec<&str> {
         self.0.names().collect()
     }

@@ -1,11 +1,12 @@
 //! Numbers and tables for people.
 
-use crate::program::print::heading;
+use crate::program::heading;
 use crate::quantity::decimals;
 pub(crate) use crate::quantity::{Style, digits};
-use comfy_table::{CellAlignment, LineStyle, Table, TableStyle, presets};
+use comfy_table::{CellAlignment, LineStyle, Row, Table, TableStyle, presets};
 use hertzchain_experiment::Units;
-use hertzchain_sim::{Group, Row, Value};
+use hertzchain_sim::{Group, Row as Line, Value};
+use std::fmt::Display;
 
 /// Decimals beyond which an error is written with an exponent.
 const MOST_DECIMALS: usize = 7;
@@ -53,12 +54,10 @@ pub(crate) fn r_squared(value: f64) -> String {
 const ROUNDING: f64 = 1e-13;
 
 /// Rows of a name and a value, aligned.
-pub(crate) fn pairs(rows: &[(String, String)]) -> String {
+pub(crate) fn pairs<T: Display>(rows: impl IntoIterator<Item = (T, String)>) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
-    for (name, value) in rows {
-        table.add_row([format!("  {name}"), value.clone()]);
-    }
+    table.add_rows(rows.into_iter().map(|(name, value)| [format!("  {name}"), value]));
     trimmed(&table)
 }
 
@@ -68,14 +67,13 @@ const RULED: TableStyle = TableStyle::new()
     .header_separator(LineStyle::none().fill('─').junction('─'))
     .bottom_border(LineStyle::none().fill('─').junction('─'));
 
-/// A table of numbers with a head.
-pub(crate) fn table(head: &[String], rows: &[Vec<String>]) -> String {
+pub(crate) fn table<T: Into<Row>>(
+    head: impl Into<Row>,
+    rows: impl IntoIterator<Item = T>,
+) -> String {
     let mut table = Table::new();
     table.load_style(RULED);
-    table.set_header(head.to_vec());
-    for row in rows {
-        table.add_row(row.clone());
-    }
+    table.set_header(head).add_rows(rows);
     for column in table.column_iter_mut() {
         column.set_cell_alignment(CellAlignment::Right);
     }
@@ -96,15 +94,12 @@ fn trimmed(table: &Table) -> String {
     lines.lines().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-/// Groups of a description under their titles.
 pub(crate) fn groups(groups: &[Group], units: Units) -> String {
     let style = Style::brief(units);
     let mut text = String::new();
     for group in groups {
-        let rows: Vec<(String, String)> = (group.rows.iter())
-            .map(|row| (row.name.clone(), value(style, &row.value, &row.unit)))
-            .collect();
-        text += &format!("{}\n{}\n", heading(&group.title), pairs(&rows));
+        let rows = group.rows.iter().map(|row| (&row.name, value(style, &row.value, &row.unit)));
+        text += &format!("{}\n{}\n", heading(&group.title), pairs(rows));
     }
     text.trim_end().to_owned()
 }
@@ -127,7 +122,7 @@ fn value(style: Style, value: &Value, unit: &str) -> String {
 
 /// One of several numbers in a line has its name before it; words speak for
 /// themselves.
-fn part(style: Style, part: &Row) -> String {
+fn part(style: Style, part: &Line) -> String {
     let value = value(style, &part.value, &part.unit);
     match part.value {
         Value::Text(_) => value,

@@ -10,9 +10,16 @@ mod print;
 mod verbs;
 mod words;
 
-use arguments::{Program, Verb};
+use self::{
+    arguments::{Program, Verb},
+    failure::{Failure, print_assumed, print_stored},
+    folder::Folder,
+    format::{Style, digits, with_error},
+    notes::{Counter, with_notes},
+    print::heading,
+    words::{chi_square_text, estimate, lines, misfit, percent},
+};
 use clap::Parser;
-use failure::Failure;
 use hertzchain_measure::records::remove_copies;
 use std::ffi::OsString;
 
@@ -28,7 +35,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let program = Program::parse_from(arguments);
     let done = match program.verb {
         Some(verb) => run_verb(verb),
-        None => verbs::version::run(program.verbose),
+        None => verbs::about::version(program.verbose),
     };
     let code = match done {
         Ok(()) => 0,
@@ -63,12 +70,12 @@ fn run_verb(verb: Verb) -> Result<(), Failure> {
         Verb::Gauge(arguments) => verbs::gauge::run(&arguments),
         #[cfg(feature = "explore")]
         Verb::Explore(arguments) => verbs::explore::run(&arguments),
-        Verb::Check(arguments) => verbs::check::run(&arguments),
-        Verb::Theory(arguments) => verbs::theory::run(&arguments),
+        Verb::Check(arguments) => verbs::describe::check(&arguments),
+        Verb::Theory(arguments) => verbs::describe::theory(&arguments),
         Verb::Laws(arguments) => verbs::laws::run(&arguments),
         Verb::Presets(arguments) => verbs::presets::run(&arguments),
-        Verb::Schema => verbs::schema::run(),
-        Verb::Completions { shell } => verbs::completions::run(shell),
-        Verb::Man { out } => verbs::man::run(out.as_deref()),
+        Verb::Schema => verbs::about::schema(),
+        Verb::Completions { shell } => verbs::about::completions(shell),
+        Verb::Man { out } => verbs::about::man(out.as_deref()),
     }
 }

@@ -1,8 +1,7 @@
 //! How far long work is, on standard error.
 
 use crate::options::Threads;
-use crate::program::failure::Failure;
-use crate::program::print;
+use crate::program::{Failure, print};
 use hertzchain_measure::Watch;
 use hertzchain_paper::reproduce::ReproduceProgress;
 use hertzchain_sim::Stop;
@@ -11,7 +10,6 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Time between lines.
 const EVERY: Duration = Duration::from_secs(5);
 
 /// Counted work: a bar in a terminal, a line every few seconds elsewhere.
@@ -32,7 +30,6 @@ impl Counter {
         counter
     }
 
-    /// Removes the bar.
     pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
     }

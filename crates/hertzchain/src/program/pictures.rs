@@ -23,7 +23,6 @@ pub(crate) fn name(sensor: Sensor, wall: Option<usize>) -> (String, &'static str
     }
 }
 
-/// Times in a unit that suits them.
 pub(crate) struct TimeAxis {
     /// Units in a second.
     pub scale: f64,

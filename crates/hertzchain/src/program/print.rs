@@ -1,7 +1,6 @@
 //! Standard output, which may be a closed pipe.
 
-use crate::program::failure::Failure;
-use crate::program::words::lines;
+use crate::program::{Failure, lines};
 use hertzchain_measure::records::without_controls;
 use std::fmt::Display;
 use std::io::{self, BufWriter, ErrorKind, IsTerminal, Write};
@@ -73,7 +72,6 @@ impl<W: Write> Write for Plain<W> {
     }
 }
 
-/// Prints indented JSON while it is made.
 pub(crate) fn stream_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print_with(|out| {
         serde_json::to_writer_pretty(&mut *out, value)?;
@@ -81,7 +79,6 @@ pub(crate) fn stream_json(value: &impl serde::Serialize) -> Result<(), Failure> 
     })
 }
 
-/// Prints indented JSON.
 pub(crate) fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
     print(&format!("{value:#}"))
 }
@@ -101,7 +98,6 @@ pub(crate) fn result(
     }
 }
 
-/// A heading, bold on a terminal.
 pub(crate) fn heading(text: &str) -> String {
     match bold() {
         true => format!("{}{}{}", BOLD[0], without_controls(text), BOLD[1]),
@@ -133,12 +129,10 @@ pub(crate) fn written(files: &str) {
     eprint!("Written:\n{}", without_controls(files));
 }
 
-/// Writes warnings to standard error.
 pub(crate) fn warn<T: Display>(warnings: impl IntoIterator<Item = T>) {
     warnings.into_iter().for_each(|text| note(&format!("warning: {text}")));
 }
 
-/// Writes a line to standard error.
 pub(crate) fn note(text: &str) {
     eprintln!("{}", without_controls(text));
 }

@@ -1,6 +1,6 @@
 //! Numbers of inference in words.
 
-use crate::program::format::{digits, with_error};
+use crate::program::{digits, with_error};
 use hertzchain_infer::{Ending, Goodness, Jacobian, Parameter};
 use hertzchain_measure::signal::ChiSquare;
 
@@ -71,7 +71,6 @@ pub(crate) fn rough(parameters: &[Parameter], jacobian: &Jacobian) -> Option<Str
     ))
 }
 
-/// A share in percent.
 pub(crate) fn percent(share: f64) -> String {
     match share {
         0.0 => "0 %".to_owned(),
@@ -99,7 +98,6 @@ pub(crate) fn doubt(ending: &Ending) -> Option<String> {
     }
 }
 
-/// Sentences, one a line.
 pub(crate) fn lines(sentences: impl IntoIterator<Item = String>) -> String {
     sentences.into_iter().map(|one| format!("{one}\n")).collect()
 }

@@ -8,7 +8,6 @@ use hertzchain_figures::{Chart, Colour, Dash, Figure, Series};
 /// Parts that stay below this share of the largest energy are thinner than a line.
 const LEAST_SEEN: f64 = 2e-3;
 
-/// One curve of the figure.
 struct EnergyPart {
     name: &'static str,
     of: fn(&Budget) -> f64,

@@ -3,17 +3,15 @@
 use crate::campaign::PreparedCampaign;
 use crate::input;
 use crate::options::CampaignOptions as Arguments;
-use crate::program::failure::Failure;
-use crate::program::notes::Counter;
-use crate::program::print::{self, print};
+use crate::program::print::print;
+use crate::program::{Counter, Failure, print};
 use hertzchain_paper::reproduce::ReproduceProgress;
 use hertzchain_sim::rig::{Done, Plan, Progress};
 use indicatif::HumanBytes;
 use std::time::{Duration, Instant};
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.input.file.is_none() && arguments.input.preset.is_none() {
+    if !input::is_named(&arguments.input) {
         let text = "which campaign? Name an experiment file, or --preset paper";
         return Err(Failure::User(text.to_owned()));
     }
@@ -48,10 +46,8 @@ fn evaluate(done: &Done) -> Result<(), Failure> {
     }
 }
 
-/// Most series that a warning names.
 const NAMED: usize = 3;
 
-/// Shots that were recorded without a trigger.
 fn untriggered(done: &Done) -> Option<String> {
     let series = &done.untriggered;
     let shots: usize = series.iter().map(|(_, shots)| shots).sum();
@@ -69,7 +65,6 @@ fn untriggered(done: &Done) -> Option<String> {
     })
 }
 
-/// What was done, and how fast.
 fn summary(plan: &Plan, done: &Done, elapsed: Duration, arguments: &Arguments) -> String {
     let campaign = plan.experiment.campaign();
     let recorder = &campaign.recorder;

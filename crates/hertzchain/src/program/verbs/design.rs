@@ -2,23 +2,19 @@
 
 use crate::design::DesignResult;
 use crate::options::DesignOptions as Arguments;
-use crate::program::failure::{Failure, print_assumed, print_stored};
-use crate::program::folder::Folder;
-use crate::program::format::{self, digits};
-use crate::program::notes::with_notes;
-use crate::program::print::{self, heading};
-use crate::program::words::{lines, misfit};
+use crate::program::{
+    Failure, Folder, digits, format, heading, lines, misfit, print, print_assumed, print_stored,
+    with_notes,
+};
 use crate::{design, inference};
 use hertzchain_infer::{CurveProblem, Expected, titled};
 use std::path::Path;
 
-/// Candidates that anybody reads.
 const SHOWN: usize = 15;
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let data =
-        inference::data(arguments.data.as_deref().unwrap_or(Path::new("")), &arguments.measured)?;
+    let file = arguments.data.as_deref().unwrap_or(Path::new(""));
+    let data = inference::data(file, &arguments.measured, None)?;
     let speeds = design::speeds(&data, arguments)?;
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
@@ -66,8 +62,6 @@ fn text(problem: &CurveProblem, run_design: &DesignResult) -> String {
             .chain(priced.then(|| digits(expected.gain_per_cost, 3)))
             .collect::<Vec<_>>()
     };
-    let best: Vec<Vec<String>> = found.ranked.iter().take(SHOWN).map(row).collect();
-    let greedy: Vec<Vec<String>> = found.greedy.iter().map(row).collect();
     format!(
         "{}Now: {}\n{}{}\n{}\n{}\n{}\n{}",
         unfit(run_design),
@@ -75,9 +69,9 @@ fn text(problem: &CurveProblem, run_design: &DesignResult) -> String {
         lines(inference::references(problem.model())),
         warnings(problem, run_design),
         heading("One measurement more, best first"),
-        format::table(&head, &best),
+        format::table(&head, found.ranked.iter().take(SHOWN).map(row)),
         heading("A series, each the best after those before it"),
-        format::table(&head, &greedy)
+        format::table(&head, found.greedy.iter().map(row))
     )
 }
 

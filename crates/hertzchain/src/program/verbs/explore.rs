@@ -3,15 +3,13 @@
 use crate::explorer::Library;
 use crate::input;
 use crate::program::arguments::Explore;
-use crate::program::failure::Failure;
-use crate::program::print;
+use crate::program::{Failure, print};
 use hertzchain_explore::{Settings, serve};
 use std::sync::Arc;
 
-/// Runs the verb until Ctrl-C.
 pub(crate) fn run(arguments: &Explore) -> Result<(), Failure> {
-    let named = arguments.input.file.is_some() || arguments.input.preset.is_some();
-    let experiment = named.then(|| input::open(&arguments.input)).transpose()?;
+    let experiment =
+        input::is_named(&arguments.input).then(|| input::open(&arguments.input)).transpose()?;
     let settings = Settings {
         port: arguments.port,
         experiment: experiment.map(|experiment| experiment.text().to_owned()),

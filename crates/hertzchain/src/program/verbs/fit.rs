@@ -8,15 +8,11 @@ mod uncertainty;
 use crate::fit::{self, FitResult, Inferred, More};
 use crate::inference;
 use crate::options::{FitOptions as Arguments, Method, ModelOptions};
-use crate::program::failure::{Failure, print_assumed, print_stored};
-use crate::program::folder::Folder;
-use crate::program::notes::with_notes;
-use crate::program::print;
+use crate::program::{Failure, Folder, print, print_assumed, print_stored, with_notes};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{CurveProblem, Data, Problem, Surrogate};
 use std::path::Path;
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = match &arguments.data[..] {
         [one] if inference::is_table(one, arguments.recorded.describes_files())? => one,
@@ -44,7 +40,7 @@ fn pairs(table: &Path, arguments: &Arguments) -> Result<Vec<(Data, Experiment)>,
     let model = |modelled: &ModelOptions| {
         inference::opened(modelled.model.as_deref(), &modelled.preset, "")
     };
-    let mut all = vec![(inference::data(table, measured)?, model(modelled)?)];
+    let mut all = vec![(inference::data(table, measured, None)?, model(modelled)?)];
     for also in &arguments.also {
         let data = inference::data_of(&also.data, measured, also.case.clone())?;
         all.push((data, model(&modelled.of_other(&also.model))?));

@@ -4,19 +4,16 @@ mod pictures;
 mod report;
 
 use crate::gauge::{self, GaugeResult};
+use crate::inference;
 use crate::options::GaugeOptions as Arguments;
-use crate::program::failure::{Failure, print_assumed};
-use crate::program::folder::Folder;
-use crate::program::notes::with_notes;
-use crate::program::print;
+use crate::program::{Failure, Folder, print, print_assumed, with_notes};
 use std::path::Path;
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let [wet_file, dry_file] =
         [&arguments.wet, &arguments.dry].map(|file| file.as_deref().unwrap_or(Path::new("")));
-    let wet = gauge::data(wet_file, &arguments.measured, arguments.wet_case.as_deref())?;
-    let dry = gauge::data(dry_file, &arguments.measured, arguments.dry_case.as_deref())?;
+    let wet = inference::data(wet_file, &arguments.measured, arguments.wet_case.as_deref())?;
+    let dry = inference::data(dry_file, &arguments.measured, arguments.dry_case.as_deref())?;
     for data in [&wet, &dry] {
         print_assumed(data, &arguments.measured);
     }

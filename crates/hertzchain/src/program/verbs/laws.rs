@@ -3,11 +3,9 @@
 use crate::bibliography::Publication;
 use crate::laws::{self, nature};
 use crate::program::arguments::LawsArguments;
-use crate::program::failure::Failure;
-use crate::program::{format, print};
+use crate::program::{Failure, format, print};
 use hertzchain_chain::laws::{LawInfo, Parameter, Source};
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &LawsArguments) -> Result<(), Failure> {
     let infos = laws::infos(arguments.name.as_deref())?;
     if arguments.json {
@@ -19,15 +17,16 @@ pub(crate) fn run(arguments: &LawsArguments) -> Result<(), Failure> {
 
 fn as_text(info: &LawInfo) -> String {
     let gate = if info.gated { "while the contact is closed" } else { "always, also across gaps" };
-    let mut rows = vec![
-        ("equation".to_owned(), info.equation.to_owned()),
-        ("kind".to_owned(), nature(info).to_owned()),
-        ("acts".to_owned(), gate.to_owned()),
-        ("validity".to_owned(), info.validity.to_owned()),
-        ("source".to_owned(), source(info)),
+    let rows = [
+        ("equation", info.equation.to_owned()),
+        ("kind", nature(info).to_owned()),
+        ("acts", gate.to_owned()),
+        ("validity", info.validity.to_owned()),
+        ("source", source(info)),
     ];
-    rows.extend(info.parameters.iter().map(|p| (p.name.to_owned(), parameter(p))));
-    format!("{}\n{}", print::heading(info.name), format::pairs(&rows))
+    let parameters = info.parameters.iter().map(|p| (p.name, parameter(p)));
+    let rows = format::pairs(rows.into_iter().chain(parameters));
+    format!("{}\n{rows}", print::heading(info.name))
 }
 
 /// The work that a law is from, and its key in the bibliography.

@@ -7,9 +7,7 @@ use crate::options::{
     DesignOptions, LiveOptions, MeasureOptions, ModelOptions, ParameterOptions, ReadingOptions,
     RowsAre,
 };
-use crate::program::failure::Failure;
-use crate::program::folder::Folder;
-use crate::program::{format, print};
+use crate::program::{Failure, Folder, format, print};
 use crate::{design, inference};
 use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy};
 use hertzchain_measure::{Case, Level, MeasureError, Shot, SpeedRow, shots_at_level};
@@ -24,7 +22,6 @@ use std::time::{Duration, Instant};
 /// Time between two looks into the folder. A recording is measured after the second one.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
     let Source { folder, measured, recording } = Source::open(arguments)?;
     let mut live = LiveMeasurement::new(&folder, &measured)?;
@@ -59,7 +56,6 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
     measure::evaluate(&shots)
 }
 
-/// Where recordings come from.
 struct Source {
     /// Where they lie.
     folder: PathBuf,
@@ -254,7 +250,7 @@ fn line_text(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>
 
 fn line_json(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>) -> Value {
     json!({
-        "shot": measure::shot(shot),
+        "shot": measure::shot(shot, false),
         "mean": place.map(|(_, row)| measure::row(row)),
         "power_law_incident": place.map(|(case, _)| measure::law(case, &case.laws.incident)),
         "next": next.and_then(|next| next.as_ref().ok()),

@@ -6,16 +6,12 @@ pub(super) mod summary;
 
 use crate::measure::{self, MeasureResult};
 use crate::options::MeasureOptions as Arguments;
-use crate::program::failure::Failure;
-use crate::program::folder::Folder;
-use crate::program::notes::Counter;
-use crate::program::print;
+use crate::program::{Counter, Failure, Folder, print};
 use hertzchain_measure::signal::Bandwidth;
 use hertzchain_measure::{
     Curves, Measurement, Note, Options, laws_csv, ratios_csv, speeds_csv, write_shots,
 };
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let most_flagged = if arguments.report.is_some() { report::MOST } else { 0 };
     let options = Options { most_flagged, ..measure::options(arguments)? };
@@ -96,7 +92,6 @@ fn write(
     folder.finish_and_report()
 }
 
-/// Every table, and everything as JSON.
 pub(super) fn tables(
     folder: &mut Folder,
     measured: &Measurement,

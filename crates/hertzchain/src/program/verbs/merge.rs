@@ -2,15 +2,13 @@
 
 use super::sweep::{reported, shard};
 use crate::program::arguments::Merge as Arguments;
-use crate::program::failure::Failure;
-use crate::program::folder::Folder;
 use crate::program::print::print;
+use crate::program::{Failure, Folder};
 use hertzchain_sim::BatchResult;
 use hertzchain_sim::rig::{CAMPAIGN_FILE, plan_of_folder};
 use indicatif::HumanBytes;
 use std::path::Path;
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folders: Vec<&Path> = arguments.folders.iter().map(AsRef::as_ref).collect();
     match folders.iter().find(|folder| folder.join(CAMPAIGN_FILE).is_file()) {

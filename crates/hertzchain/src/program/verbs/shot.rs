@@ -5,21 +5,16 @@ mod traces;
 
 use crate::input;
 use crate::options::{ShotOptions as Arguments, Threads};
-use crate::program::failure::{self, Failure};
-use crate::program::folder::Folder;
-use crate::program::notes::with_notes;
-use crate::program::print;
-use crate::program::words::lines;
-use crate::shot::{PreparedShot, ShotResult};
+use crate::program::{Failure, Folder, failure, lines, print, with_notes};
+use crate::shot::PreparedShot;
 use crate::table::named;
 use hertzchain_sim::{Expected, Plan};
-use serde_json::Value;
+use serde_json::json;
 use std::path::Path;
 
 /// Expected time in s from which on a shot is announced.
 const LONG_S: f64 = 10.0;
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let prepared = PreparedShot::new(&experiment, arguments)?;
@@ -28,7 +23,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shot = with_notes(Some(Threads(1)), || prepared.run())?;
     failure::print_speed_warnings(arguments.speed.as_ref(), &shot.warnings);
     if arguments.json {
-        print::print_json(&json(&shot)?)?;
+        print::print_json(&named(json!(shot), shot.units))?;
     } else {
         let assumed = lines(shot.assumed_model.clone());
         print::print(&(assumed + &report::text(&experiment, &shot.plan, &shot)))?;
@@ -36,14 +31,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     folder.map_or(Ok(()), |folder| traces::write(folder, arguments, &experiment, &shot))
 }
 
-/// The result with names that suit the experiment's units.
-fn json(shot: &ShotResult) -> Result<Value, Failure> {
-    let whole = serde_json::to_value(shot);
-    let whole = whole.map_err(|error| Failure::Ours(format!("JSON: {error}")))?;
-    Ok(named(whole, shot.units))
-}
-
-/// Announces a shot that takes long.
 fn announce(plan: &Plan) {
     let expected = Expected::of(plan).ok();
     if let Some(expected) = expected.filter(|expected| expected.time_s > LONG_S) {

@@ -5,18 +5,14 @@ pub(crate) mod reported;
 pub(crate) mod shard;
 
 use crate::options::SweepOptions as Arguments;
-use crate::program::failure::{self, Failure};
-use crate::program::folder::Folder;
-use crate::program::format::Style;
-use crate::program::notes::Counter;
-use crate::program::print;
+use crate::program::{Counter, Failure, Folder, Style, failure, print};
 use crate::sweep::{self, SweepResult};
 use crate::{input, missing, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_paper::reproduce::ReproduceProgress;
 use hertzchain_sim::{BatchShot, StudyError};
+use serde_json::json;
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speeds = sweep::speeds(&experiment, arguments)?;
@@ -24,7 +20,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let counter = Counter::new("shots", speeds.len() as u64);
     let batch = sweep::batch(&experiment, speeds, arguments)?;
     if let Some(shard) = arguments.shard {
-        let pool = sweep::pool(arguments)?;
+        let pool = sweep::pool(arguments.threads)?;
         let done = pool.install(|| shard::run(arguments, &batch, shard, &|| counter.advance()));
         counter.finish();
         return done;
@@ -60,11 +56,7 @@ fn show(
     if arguments.json {
         return match experiment.units() {
             Units::Si => print::stream_json(swept),
-            units => {
-                let whole = serde_json::to_value(swept);
-                let whole = whole.map_err(|error| Failure::Ours(format!("JSON: {error}")))?;
-                print::print_json(&table::named(whole, units))
-            }
+            units => print::print_json(&table::named(json!(swept), units)),
         };
     }
     if let Some(assumed) = &swept.summary.assumed_model {

@@ -5,7 +5,6 @@ use crate::fit::{Inferred, TableFit};
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series};
 use hertzchain_infer::Observable;
 
-/// Looks of observables, in their order.
 const LOOKS: [(Colour, Marker); 4] = [
     (Colour::BLUE, Marker::Circle),
     (Colour::VERMILION, Marker::OpenSquare),

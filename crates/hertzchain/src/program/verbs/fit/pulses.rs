@@ -5,17 +5,11 @@ use crate::fit::pulses::{Pulsed, REPORTED, Shown, fit_result, json, pulses_csv, 
 use crate::fit::tables_of_any;
 use crate::inference;
 use crate::options::FitOptions as Arguments;
-use crate::program::failure::{Failure, print_stored};
-use crate::program::folder::Folder;
-use crate::program::format::digits;
-use crate::program::notes::with_notes;
-use crate::program::print::{self, heading};
-use crate::program::words::lines;
+use crate::program::{Failure, Folder, digits, heading, lines, print, print_stored, with_notes};
 use hertzchain_figures::{Chart, Colour, Figure, Marker, Series};
 use hertzchain_infer::Problem;
 use serde_json::Value;
 
-/// Runs the verb on recordings.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = recorded(arguments)?;
     let folder = Folder::asked(arguments.out.as_deref())?;
@@ -27,7 +21,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
 }
 
-/// Everything that is to be said.
 fn text(fit_result: &Pulsed, arguments: &Arguments) -> String {
     let records = &fit_result.problem.records;
     let noise = records.iter().flat_map(|record| &record.sigma_v);

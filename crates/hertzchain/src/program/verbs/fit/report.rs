@@ -3,11 +3,8 @@
 use crate::fit::{AlternativeModels, Curves, FitResult, Inferred, Limit, More, Sampled, TableFit};
 use crate::inference::{references, widened};
 use crate::options::FitOptions as Arguments;
-use crate::program::format::{self, digits};
-use crate::program::print::heading;
-use crate::program::words::{
-    chi_square_text, doubt, estimate, lines, misfit, p_value, percent, rough,
-};
+use crate::program::words::{doubt, p_value, rough};
+use crate::program::{chi_square_text, digits, estimate, format, heading, lines, misfit, percent};
 use hertzchain_infer::{
     Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Prior, Profile, Runs, Started,
 };
@@ -15,7 +12,6 @@ use hertzchain_infer::{
 /// The solver's error may be this share of the least standard error.
 const MOST_SHARE: f64 = 0.1;
 
-/// Everything that is to be said.
 pub(super) fn text(fit_result: &FitResult, arguments: &Arguments) -> String {
     let all = fit_result.tables();
     let titles: String = all.iter().map(|table| title(table, all.len() > 1)).collect();
@@ -98,7 +94,6 @@ fn derivatives(fit_result: &Inferred) -> String {
     format!("Derivatives by two step sizes agree within {}\n", percent(worst))
 }
 
-/// What is doubtful about the minimum.
 pub(super) fn warnings(fit_result: &Inferred) -> String {
     let doubt = doubt(&fit_result.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("warning: {doubt}\n"));
@@ -139,7 +134,6 @@ fn other_minima(fit_result: &Inferred) -> String {
     )
 }
 
-/// The parameters with their standard errors.
 pub(super) fn values(fit_result: &Inferred) -> String {
     let parameters = fit_result.parameters.iter().enumerate();
     let row = |(at, parameter): (usize, &Parameter)| {
@@ -151,7 +145,7 @@ pub(super) fn values(fit_result: &Inferred) -> String {
         };
         (parameter.name.clone(), estimate(parameter, value, sd) + &limit + &prior)
     };
-    format::pairs(&parameters.map(row).collect::<Vec<_>>())
+    format::pairs(parameters.map(row))
 }
 
 /// What the data say of a parameter at its bound.
@@ -171,7 +165,6 @@ fn limit(limit: &Limit) -> String {
 /// Pairs whose correlation is worth a line.
 const REPORTED: f64 = 0.5;
 
-/// Most of them that anybody reads.
 const PAIRS: usize = 6;
 
 fn correlations(fit_result: &Inferred) -> String {
@@ -193,7 +186,6 @@ fn correlations(fit_result: &Inferred) -> String {
     }
 }
 
-/// χ², runs test and largest residual.
 fn goodness(goodness: &Goodness) -> String {
     let Some(chi_square) = goodness.chi_square else {
         return "ν = 0: as many numbers as parameters\n".to_owned();
@@ -216,7 +208,6 @@ fn runs_text(runs: Runs) -> String {
     format!("runs test: {} ({count} runs, {expected} expected)", p_value(probability))
 }
 
-/// The model's own error against the data's.
 fn accuracy(fit_result: &FitResult) -> String {
     let rows = fit_result.problem.curves.iter().flat_map(|curve| &curve.data.rows);
     let times = rows.flat_map(|row| row.values.iter().take(2).flatten());
@@ -268,7 +259,6 @@ pub(super) fn determined(fit_result: &Inferred, advice: &dyn Fn() -> Vec<String>
     text
 }
 
-/// Intervals of profiles or of a posterior.
 pub(super) fn more(fit_result: &Inferred) -> String {
     match &fit_result.more {
         More::Nothing => String::new(),
@@ -292,9 +282,7 @@ fn intervals_of_profiles(fit_result: &Inferred, profiles: &[Profile]) -> String 
             .map(|interval| format!("{} to {}", end(interval.lower), end(interval.upper)));
         std::iter::once(name).chain(ends).collect::<Vec<_>>()
     };
-    let rows: Vec<Vec<String>> = profiles.iter().map(row).collect();
-    let head = ["by profile", "68 %", "95 %"].map(str::to_owned);
-    format!("\n{}", format::table(&head, &rows))
+    format!("\n{}", format::table(["by profile", "68 %", "95 %"], profiles.iter().map(row)))
 }
 
 fn interpolated(error: f64, computed_m_s: &[f64]) -> String {
@@ -313,7 +301,7 @@ fn sampled_text(fit_result: &Inferred, sampled: &Sampled) -> String {
         Curves::Computed(Some(why)) => format!("every curve computed, as {why}"),
         Curves::Interpolated(error, speeds_m_s) => interpolated(*error, speeds_m_s),
     };
-    let mut text = format!(
+    let text = format!(
         "\nPosterior: {} walkers, {} steps, {} of proposals taken; {how}\n",
         chain.walkers(),
         chain.steps(),
@@ -341,14 +329,11 @@ fn sampled_text(fit_result: &Inferred, sampled: &Sampled) -> String {
             digits(found.effective, 3),
         ]
     };
-    let rows: Vec<Vec<String>> = fit_result.parameters.iter().enumerate().map(row).collect();
     let head =
         ["posterior", "median", "68 %", "95 %", "steps correlated", "R-hat", "effective samples"];
-    text += &format::table(&head.map(str::to_owned), &rows);
-    text
+    text + &format::table(head, fit_result.parameters.iter().enumerate().map(row))
 }
 
-/// Models of the same data.
 fn alternatives(alternatives: &AlternativeModels) -> String {
     let lost = alternatives.lost.iter().map(|lost| {
         format!(
@@ -378,9 +363,8 @@ fn compared_text(alternatives: &AlternativeModels, comparison: &Comparison) -> S
                 .map_or("too few speeds".to_owned(), |f| digits(f.mean, 5)),
         ]
     };
-    let rows: Vec<Vec<String>> = comparison.order.iter().map(row).collect();
     let head = ["model", "free", "χ²", "ν", "p", "AICc above best", "BIC", "cross-validated score"];
-    let table = format::table(&head.map(str::to_owned), &rows);
+    let table = format::table(head, comparison.order.iter().map(row));
     let without = alternatives.all.iter().filter(|alternative| !alternative.without.is_empty());
     let without = without.map(|alternative| {
         let settings = alternative.without.join(", ");

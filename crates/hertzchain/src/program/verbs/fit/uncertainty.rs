@@ -5,7 +5,6 @@ use hertzchain_figures::Figure;
 use hertzchain_figures::inference::{Corner, ProfileCurve, SingularValues, profile_figure};
 use hertzchain_infer::{Parameter, Posterior, Profile, RISE_OF_95_PERCENT};
 
-/// Parameters as axes say them.
 fn labels(fit_result: &Inferred) -> Vec<String> {
     let label = |parameter: &Parameter| match parameter.unit.as_str() {
         "" => parameter.name.clone(),

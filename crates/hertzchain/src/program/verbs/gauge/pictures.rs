@@ -7,7 +7,6 @@ use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, is_determined};
 /// Speeds at which an oil's curve is drawn.
 const POINTS: usize = 60;
 
-/// Both numbers, one panel each.
 pub(super) fn contacts(run_gauge: &GaugeResult) -> Figure {
     match has_both(run_gauge) {
         true => Figure::single_column(120.0)
@@ -86,7 +85,6 @@ fn speeds(run_gauge: &GaugeResult) -> Vec<f64> {
     (0..POINTS).map(speed).collect()
 }
 
-/// What an oil would give.
 fn curve(run_gauge: &GaugeResult, (number, oil): (usize, &Oil), of: usize, unit: f64) -> Series {
     let speeds = speeds(run_gauge);
     let value = |speed: &f64| {

@@ -2,13 +2,12 @@
 
 use crate::gauge::GaugeResult;
 use crate::inference::references;
-use crate::program::format::{self, digits, with_error};
-use crate::program::print::heading;
-use crate::program::words::{chi_square_text, estimate, lines, misfit, percent};
+use crate::program::{
+    chi_square_text, digits, estimate, format, heading, lines, misfit, percent, with_error,
+};
 use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Contact, NEVER, Pair, WetRow, is_determined};
 
-/// Everything that is to be said.
 pub(super) fn text(run_gauge: &GaugeResult) -> String {
     let doubts = doubts(run_gauge);
     let mut text = doubts.clone();
@@ -66,7 +65,7 @@ fn dry(run_gauge: &GaugeResult) -> String {
     });
     let chi_square = gauge.dry_goodness().chi_square;
     let chi_square = chi_square.map_or(String::new(), |found| chi_square_text(found) + "\n");
-    format::pairs(&rows.collect::<Vec<_>>()) + &chi_square
+    format::pairs(rows) + &chi_square
 }
 
 /// K in GN/m^1.5 and A in ns, with their errors.
@@ -123,9 +122,7 @@ fn contacts(run_gauge: &GaugeResult) -> String {
     let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", ""];
     let few = rows.iter().all(|row| row[3].is_empty());
     let shown = if few { 3 } else { 4 };
-    let cut = |row: &Vec<String>| row.iter().take(shown).cloned().collect::<Vec<_>>();
-    let rows: Vec<Vec<String>> = rows.iter().map(cut).collect();
-    format::table(&cut(&head.map(str::to_owned).to_vec()), &rows)
+    format::table(&head[..shown], rows.iter().map(|row| &row[..shown]))
 }
 
 /// What K and A take for granted.
@@ -168,7 +165,6 @@ fn matches(run_gauge: &GaugeResult) -> String {
         row
     });
     let head = ["oil", "distance (standard errors)", "as far by chance", "verdict"];
-    let mut head: Vec<String> = head.map(str::to_owned).to_vec();
-    head.extend(own.iter().map(|parameter| parameter.name.clone()));
-    format::table(&head, &rows.collect::<Vec<_>>())
+    let own = own.iter().map(|parameter| parameter.name.as_str());
+    format::table(head.into_iter().chain(own), rows)
 }

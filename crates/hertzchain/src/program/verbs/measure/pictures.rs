@@ -1,10 +1,9 @@
 //! Figures of what was measured.
 
 use hertzchain_figures::{Chart, Dash, Figure, Series, case_look};
-use hertzchain_measure::signal::{Estimate, FitError, Flight, PowerLaw, Ratio};
-use hertzchain_measure::{Case, Curves, Example, Shot, SpeedRow};
+use hertzchain_measure::signal::{Estimate, Flight, Ratio};
+use hertzchain_measure::{Case, Curves, Example, Shot, SpeedRow, WetOverDry};
 
-/// Examples that fit on a page.
 const MOST: usize = 4;
 
 /// How much of a record is shown before the first pulse and after the last, in
@@ -59,33 +58,27 @@ fn title(example: &Example) -> String {
 /// Times of flight at the mean speeds with all their errors, and their power laws, dashed where
 /// the errors do not allow any.
 pub(super) fn times(curves: &Curves) -> Figure {
-    let chart = |title: &str| {
-        Chart::new("Speed of the striker (m/s)", "Time of flight (µs)")
-            .x_log()
-            .y_log()
-            .title(title)
-            .legend(curves.cases.len() != 1)
-    };
-    let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
-    for (number, case) in curves.cases.iter().enumerate() {
-        let laws = &case.laws;
-        incident = with_curve(incident, (number, case), &laws.incident, 0);
-        reflected = with_curve(reflected, (number, case), &laws.reflected, 1);
-    }
+    let chart = Chart::new("Speed of the striker (m/s)", "Time of flight (µs)").x_log().y_log();
+    let chart = chart.legend(curves.cases.len() != 1);
+    let cases = curves.cases.iter().enumerate();
+    both(&chart, |chart, time| {
+        cases.clone().fold(chart, |chart, case| with_curve(chart, case, time))
+    })
+}
+
+/// A panel of incident and one of reflected times, 0 and 1.
+fn both(empty: &Chart, filled: impl Fn(Chart, usize) -> Chart) -> Figure {
     let figure = Figure::double_column(75.0).columns(2).letters();
-    figure.panel(incident).panel(reflected)
+    let panel = |(time, title)| filled(empty.clone().title(title), time);
+    ["incident", "reflected"].into_iter().enumerate().map(panel).fold(figure, Figure::panel)
 }
 
 /// Width of a fit's line in points: the data lie on top.
 const FIT_WIDTH: f64 = 0.7;
 
 /// Points of a case and their power law.
-fn with_curve(
-    chart: Chart,
-    (number, case): (usize, &Case),
-    law: &Result<PowerLaw, FitError>,
-    time: usize,
-) -> Chart {
+fn with_curve(chart: Chart, (number, case): (usize, &Case), time: usize) -> Chart {
+    let law = [&case.laws.incident, &case.laws.reflected][time];
     let known: Vec<(&SpeedRow, Estimate)> =
         case.rows.iter().filter_map(|row| Some((row, row.at_mean_speed_s[time]?))).collect();
     let column = |value: &dyn Fn(&(&SpeedRow, Estimate)) -> f64| -> Vec<f64> {
@@ -114,30 +107,21 @@ fn with_curve(
 
 /// Ratios of times to the reference's, with error bars.
 pub(super) fn ratios(curves: &Curves, reference: &str) -> Figure {
-    let chart = |title: &str| {
-        Chart::new("Speed of the striker (m/s)", &format!("Time of flight over {reference}"))
-            .x_log()
-            .title(title)
-            .h_line(1.0, "")
-    };
-    let (mut incident, mut reflected) = (chart("incident"), chart("reflected"));
-    for wet in &curves.ratios {
+    let label = format!("Time of flight over {reference}");
+    let chart = Chart::new("Speed of the striker (m/s)", &label).x_log().h_line(1.0, "");
+    let series = |wet: &WetOverDry, time: usize| {
         // The look that the case has beside its reference.
-        let same = |case: &Case| case.name == wet.case;
-        let number = curves.cases.iter().position(same).unwrap_or(0);
-        let series = |ratios: &[Ratio]| {
-            let speeds: Vec<f64> = ratios.iter().map(|ratio| ratio.speed).collect();
-            let values: Vec<f64> = ratios.iter().map(|ratio| ratio.ratio.value).collect();
-            let errors: Vec<f64> = ratios.iter().map(|ratio| ratio.ratio.sigma).collect();
-            let (colour, marker) = case_look(&wet.case, number);
-            Series::points(&wet.case, &speeds, &values)
-                .marker(marker)
-                .colour(colour)
-                .y_error(&errors)
+        let number = curves.cases.iter().position(|case| case.name == wet.case).unwrap_or(0);
+        let (colour, marker) = case_look(&wet.case, number);
+        let column = |of: fn(&Ratio) -> f64| {
+            [&wet.incident, &wet.reflected][time].iter().map(of).collect::<Vec<f64>>()
         };
-        incident = incident.with(series(&wet.incident));
-        reflected = reflected.with(series(&wet.reflected));
-    }
-    let figure = Figure::double_column(75.0).columns(2).letters();
-    figure.panel(incident).panel(reflected)
+        Series::points(&wet.case, &column(|of| of.speed), &column(|of| of.ratio.value))
+            .marker(marker)
+            .colour(colour)
+            .y_error(&column(|of| of.ratio.sigma))
+    };
+    both(&chart, |chart, time| {
+        curves.ratios.iter().fold(chart, |chart, wet| chart.with(series(wet, time)))
+    })
 }

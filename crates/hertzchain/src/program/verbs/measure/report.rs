@@ -1,13 +1,12 @@
 //! A page with a plot of every flagged shot.
 
 use super::pictures;
-use crate::program::failure::Failure;
+use crate::program::Failure;
 use hertzchain_figures::Figure;
 use hertzchain_measure::records::write_whole;
 use hertzchain_measure::{Example, Measurement, Shot};
 use std::path::Path;
 
-/// Most shots of a page.
 pub(super) const MOST: usize = 500;
 
 const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\">\

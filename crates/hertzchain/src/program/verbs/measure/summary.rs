@@ -1,18 +1,14 @@
 //! What was measured, in short, for people.
 
-use crate::program::format::{self, with_error};
-use crate::program::print::heading;
-use crate::program::words::chi_square_text;
+use crate::program::{chi_square_text, format, heading, with_error};
 use hertzchain_measure::signal::{Estimate, FitError, PowerLaw, Summary};
 use hertzchain_measure::{Case, Curves, Measurement, Shot, SpeedRow};
 
-/// Shots that anybody reads one by one.
 const MOST_SHOTS: usize = 30;
 
 /// Relative errors below this are the arithmetic's.
 const ROUNDING: f64 = 1e-12;
 
-/// Tables and fits.
 pub(crate) fn text(measured: &Measurement, curves: &Curves, reference: &str) -> String {
     let mut text = counted(measured) + "\n";
     let few = curves.cases.is_empty() || measured.shots.len() <= MOST_SHOTS;
@@ -90,13 +86,11 @@ fn shots(shots: &[Shot]) -> String {
             shot.flags(),
         ]
     };
-    let rows: Vec<Vec<String>> = shots.iter().take(MOST_SHOTS).map(row).collect();
-    let more = shots.len().saturating_sub(MOST_SHOTS);
-    let more = match more {
+    let more = match shots.len().saturating_sub(MOST_SHOTS) {
         0 => String::new(),
         more => format!("… and {more} more; --out writes all\n"),
     };
-    format::table(&head.map(str::to_owned), &rows) + &more
+    format::table(head, shots.iter().take(MOST_SHOTS).map(row)) + &more
 }
 
 /// How many shots count, and what does not.
@@ -149,11 +143,10 @@ fn curve(case: &Case) -> String {
             share(row.reflected_over_incident),
         ]
     });
-    let rows: Vec<Vec<String>> = rows.collect();
     format!(
         "\n{}\n{}{}{}",
         heading(named(&case.name)),
-        format::table(&head.map(str::to_owned), &rows),
+        format::table(head, rows),
         law("incident", case, &case.laws.incident),
         law("reflected", case, &case.laws.reflected)
     )

@@ -3,10 +3,8 @@
 mod rig;
 
 use crate::program::arguments::Reproduce;
-use crate::program::failure::Failure;
-use crate::program::folder::Folder;
-use crate::program::notes::Counter;
 use crate::program::print::print;
+use crate::program::{Counter, Failure, Folder};
 use comfy_table::{ContentArrangement, Table, presets};
 use hertzchain_paper::claims::{ClaimVerdict, EvaluatedClaim, MEANING, computed_text};
 use hertzchain_paper::figures::{captions, figures};
@@ -18,7 +16,6 @@ use std::fmt::Write as _;
 use std::path::Path;
 use terminal_size::terminal_size_of;
 
-/// Runs the verb.
 pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
     // Whether it can be written to, before anything is computed for it.
     let mut folder = Folder::open(&arguments.out)?;
@@ -43,7 +40,6 @@ pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
     print(&text)
 }
 
-/// Tables and pictures.
 fn write(computed: &Reproduction, folder: &mut Folder) -> Result<(), Failure> {
     for (name, table) in computed.tables().map_err(|error| failure(&error))? {
         folder.write(name, table.as_bytes())?;
@@ -61,7 +57,6 @@ fn failure(error: &ReproduceError) -> Failure {
     Failure::Ours(error.to_string())
 }
 
-/// What was found, and where it lies.
 fn summary(computed: &Reproduction, folder: &Path) -> String {
     let verdicts = verdicts(&computed.evaluated);
     let mut text = format!("{}\n\n{MEANING}\n\n{verdicts}\n", times(computed));
@@ -84,7 +79,6 @@ fn summary(computed: &Reproduction, folder: &Path) -> String {
     text
 }
 
-/// Speeds of the summary in m/s.
 const SHOWN_M_S: [f64; 4] = [0.075, 0.25, 0.5, 1.0];
 
 /// Incident and reflected ToF of each case at a few speeds.
@@ -104,7 +98,6 @@ fn times(computed: &Reproduction) -> Table {
     table
 }
 
-/// Every claim with its verdict and value.
 fn verdicts(evaluated: &[EvaluatedClaim]) -> String {
     let mut table = plain();
     table.set_header(["claim of the paper", "verdict", "computed"]);

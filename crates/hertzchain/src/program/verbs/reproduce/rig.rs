@@ -1,9 +1,7 @@
 //! `hertzchain reproduce --rig`: what the paper says of its rig.
 
 use super::verdicts;
-use crate::program::failure::Failure;
-use crate::program::folder::Folder;
-use crate::program::notes::Counter;
+use crate::program::{Counter, Failure, Folder};
 use hertzchain_experiment::preset;
 use hertzchain_paper::figures::rig_figures;
 use hertzchain_paper::rig_claims::{MEANING, RigClaims, RigDesign, observe, series_csv};

@@ -2,8 +2,8 @@
 
 use crate::contact::HertzContact;
 use crate::missing;
-use crate::program::format::{Style, digits, pairs};
-use crate::program::print::heading;
+use crate::program::format::pairs;
+use crate::program::{Style, digits, heading};
 use hertzchain_chain::Start;
 use hertzchain_chain::observe::{Maximum, Passage, Pulse};
 use hertzchain_chain::wave::Budget;
@@ -12,7 +12,6 @@ use hertzchain_sim::{Plan, Shot};
 
 type Rows = Vec<(String, String)>;
 
-/// Everything that was asked of the shot.
 pub(super) fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String {
     let accuracy = shot.accuracy_reached.unwrap_or(plan.accuracy);
     let style = Style::of_accuracy(accuracy, experiment.units());
@@ -21,12 +20,12 @@ pub(super) fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String 
         let speed = Style::brief(style.units).quantity(*speed_m_s, "m/s");
         text += &format!("Striker at {speed}, {}\n", experiment.reading());
     }
-    text += &format!("\n{}", pairs(&flight(style, shot)));
+    text += &format!("\n{}", pairs(flight(style, shot)));
     text += &match &shot.passage {
         Ok(seen) => {
             let mut rows = pulses(style, seen);
             rows.extend(contact(style, plan, shot));
-            format!("\n{}\n{}", heading("Pulses"), pairs(&rows))
+            format!("\n{}\n{}", heading("Pulses"), pairs(rows))
         }
         Err(reason) => format!(
             "\nNo time of flight: {}.\n{}",
@@ -35,39 +34,41 @@ pub(super) fn text(experiment: &Experiment, plan: &Plan, shot: &Shot) -> String 
         ),
     };
     if let Some(budget) = &shot.budget {
-        text += &format!("\n{}\n{}", heading("Energy at the end"), pairs(&energy(style, budget)));
+        text += &format!("\n{}\n{}", heading("Energy at the end"), pairs(energy(style, budget)));
     }
-    text += &format!("\n{}\n{}", heading("Computation"), pairs(&computation(style, shot)));
+    text += &format!("\n{}\n{}", heading("Computation"), pairs(computation(style, shot)));
     for note in &shot.notes {
         text += &format!("\nNote: {note}.\n");
     }
     text
 }
 
+/// Rows of which the value is known.
+fn known<const N: usize>(rows: [(&str, Option<String>); N]) -> Rows {
+    rows.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect()
+}
+
 fn flight(style: Style, shot: &Shot) -> Rows {
     let brief = Style::brief(style.units);
-    let mut rows = Rows::new();
-    if let Some(flight) = shot.flight {
-        let reflected = flight.reflected_s.map(|time| style.exact(time, "s"));
-        rows.push(("incident time of flight".into(), style.exact(flight.incident_s, "s")));
-        let reflected = reflected.unwrap_or_else(|| no_return(brief, shot));
-        rows.push(("reflected time of flight".into(), reflected));
-    }
-    if let Some(speed) = shot.pulse_speed_beads_s {
-        let speed = brief.quantity(speed, "beads/s");
-        rows.push(("pulse speed, sensor bead to wall".into(), speed));
-    }
-    if let Some(rebound) = shot.rebound {
-        let at = |(time, velocity): (f64, f64)| {
-            let (velocity, time) = (brief.quantity(velocity, "m/s"), brief.quantity(time, "s"));
-            format!("{velocity} at {time}")
-        };
-        let first = rebound.first.map_or_else(|| "it never left bead 1".to_owned(), at);
-        rows.push(("striker when it first separates".into(), first));
-        let end = rebound.end_s.zip(rebound.end_m_s);
-        let end = end.map_or_else(|| "not followed to its end".to_owned(), at);
-        rows.push(("striker at the end of the shot".into(), end));
-    }
+    let moved = |(time, velocity): (f64, f64)| {
+        format!("{} at {}", brief.quantity(velocity, "m/s"), brief.quantity(time, "s"))
+    };
+    let reflected = |time: Option<f64>| match time {
+        Some(time) => style.exact(time, "s"),
+        None => no_return(brief, shot),
+    };
+    let first = |first: Option<_>| first.map_or("it never left bead 1".to_owned(), moved);
+    let end = |end: Option<_>| end.map_or("not followed to its end".to_owned(), moved);
+    let mut rows = known([
+        ("incident time of flight", shot.flight.map(|it| style.exact(it.incident_s, "s"))),
+        ("reflected time of flight", shot.flight.map(|it| reflected(it.reflected_s))),
+        (
+            "pulse speed, sensor bead to wall",
+            shot.pulse_speed_beads_s.map(|speed| brief.quantity(speed, "beads/s")),
+        ),
+        ("striker when it first separates", shot.rebound.map(|it| first(it.first))),
+        ("striker at the end of the shot", shot.rebound.map(|it| end(it.end_s.zip(it.end_m_s)))),
+    ]);
     if shot.flight.is_none() {
         let peaks = shot.sensor_maxima.iter().take(5);
         rows.extend(peaks.map(|peak| ("peak of the sensor bead".into(), at(brief, peak))));
@@ -95,9 +96,8 @@ fn last_speeds(style: Style, shot: &Shot) -> String {
     let brief = Style::brief(style.units);
     let bodies = shot.velocity_m_s.iter().enumerate();
     let bodies = bodies.take(shot.velocity_m_s.len() - 1);
-    let rows: Rows =
-        bodies.map(|(body, v)| (format!("body {body}"), brief.quantity(*v, "m/s"))).collect();
-    format!("\n{}\n{}", heading("Velocities at the end"), pairs(&rows))
+    let rows = bodies.map(|(body, v)| (format!("body {body}"), brief.quantity(*v, "m/s")));
+    format!("\n{}\n{}", heading("Velocities at the end"), pairs(rows))
 }
 
 fn at(style: Style, peak: &Maximum) -> String {
@@ -159,45 +159,38 @@ fn contact(style: Style, plan: &Plan, shot: &Shot) -> Option<(String, String)> {
 
 fn energy(style: Style, budget: &Budget) -> Rows {
     let brief = Style::brief(style.units);
-    let mut rows = Rows::new();
-    let mut line = |name: &str, value: f64| {
-        if value != 0.0 {
-            rows.push((name.to_owned(), brief.quantity(value, "J")));
-        }
-    };
-    line("at the start", budget.start_j);
-    line("put in by the driven end", budget.driven_j);
-    line("kinetic", budget.kinetic_j);
-    line("elastic", budget.elastic_j);
-    for lost in &budget.dissipated {
-        line(&format!("dissipated by {}", lost.law), lost.energy_j);
-    }
-    line("clipped", budget.clipped_j);
-    line("gravity", budget.gravity_j);
-    line("preload", budget.preload_j);
-    line("stop", budget.stop_j);
+    let part = |value_j: f64| (value_j != 0.0).then(|| brief.quantity(value_j, "J"));
+    let mut rows = known([
+        ("at the start", part(budget.start_j)),
+        ("put in by the driven end", part(budget.driven_j)),
+        ("kinetic", part(budget.kinetic_j)),
+        ("elastic", part(budget.elastic_j)),
+    ]);
+    let lost = budget.dissipated.iter();
+    rows.extend(
+        lost.filter_map(|lost| Some((format!("dissipated by {}", lost.law), part(lost.energy_j)?))),
+    );
     let residual = format!("{} of the input", digits(budget.relative_residual(), 2));
-    rows.push(("residual".to_owned(), residual));
+    rows.extend(known([
+        ("clipped", part(budget.clipped_j)),
+        ("gravity", part(budget.gravity_j)),
+        ("preload", part(budget.preload_j)),
+        ("stop", part(budget.stop_j)),
+        ("residual", Some(residual)),
+    ]));
     rows
 }
 
 fn computation(style: Style, shot: &Shot) -> Rows {
     let brief = Style::brief(style.units);
-    let mut rows = vec![
-        ("duration".to_owned(), brief.quantity(shot.duration_s, "s")),
-        ("solver".to_owned(), shot.solver.clone()),
-        ("accuracy asked".to_owned(), digits(shot.accuracy_asked, 2)),
-    ];
-    if let Some(reached) = shot.accuracy_reached {
-        rows.push(("accuracy reached".to_owned(), digits(reached, 2)));
-    }
-    if let Some(tolerance) = shot.tolerance {
-        rows.push(("tolerance per step".to_owned(), digits(tolerance, 2)));
-    }
-    if let Some(step) = shot.step_s {
-        rows.push(("step".to_owned(), brief.quantity(step, "s")));
-    }
     let work = format!("{} in {} steps", shot.work.force_passes, shot.work.steps);
-    rows.push(("force passes".to_owned(), work));
-    rows
+    known([
+        ("duration", Some(brief.quantity(shot.duration_s, "s"))),
+        ("solver", Some(shot.solver.clone())),
+        ("accuracy asked", Some(digits(shot.accuracy_asked, 2))),
+        ("accuracy reached", shot.accuracy_reached.map(|reached| digits(reached, 2))),
+        ("tolerance per step", shot.tolerance.map(|tolerance| digits(tolerance, 2))),
+        ("step", shot.step_s.map(|step_s| brief.quantity(step_s, "s"))),
+        ("force passes", Some(work)),
+    ])
 }

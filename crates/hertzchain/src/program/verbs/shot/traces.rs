@@ -2,23 +2,18 @@
 
 use crate::csv::{Column, table, view};
 use crate::options::{ShotOptions as Arguments, recorded};
-use crate::program::failure::Failure;
-use crate::program::folder::Folder;
-use crate::program::format::Style;
-use crate::program::pictures;
+use crate::program::{Failure, Folder, Style, pictures};
 use crate::shot::{self, ShotResult};
-use crate::table::suffix;
+use crate::table::{named, suffix};
 use hertzchain_chain::observe::Trace;
 use hertzchain_chain::{Chain, FarEnd, Sensor, Start};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_figures::Animation;
 use hertzchain_sim::{Plan, Shot, shoot};
-use serde_json::Value;
+use serde_json::{Value, json};
 
-/// The file with everything about the shot.
 pub(super) const SHOT: &str = "shot.json";
 
-/// The moving picture.
 pub(super) const ANIMATION: &str = "animation.html";
 
 /// Samples of a shot, unless the chain is so long that memory decides.
@@ -49,16 +44,12 @@ impl Bodies {
         self.last + 1 - self.first
     }
 
-    fn positions(&self) -> Vec<Sensor> {
-        (self.first..=self.last).map(Sensor::Position).collect()
-    }
-
-    fn velocities(&self) -> Vec<Sensor> {
-        (self.first..=self.last).map(Sensor::Velocity).collect()
-    }
-
-    fn forces(&self) -> Vec<Sensor> {
-        (self.first..self.last).map(Sensor::Contact).collect()
+    /// Positions and velocities of all, and the forces between them.
+    fn sensors(&self) -> impl Iterator<Item = Sensor> {
+        let (first, last) = (self.first, self.last);
+        let positions = (first..=last).map(Sensor::Position);
+        let forces = (first..last).map(Sensor::Contact);
+        positions.chain((first..=last).map(Sensor::Velocity)).chain(forces)
     }
 }
 
@@ -74,16 +65,18 @@ pub(super) fn write(
     let shown = experiment.sensors();
     let mut sensors = shown.clone();
     if arguments.npy || arguments.animate {
-        sensors.extend(bodies.positions());
-        sensors.extend(bodies.velocities());
-        sensors.extend(bodies.forces());
+        sensors.extend(bodies.sensors());
     }
     let mut trace = sampled(plan, shot, sensors)?;
     // Budgets stand at the ends of steps; the last step may reach beyond the shot.
     trace.budgets.extend(shot.budget.clone());
     let title = title(experiment, shot);
     if arguments.out.is_some() {
-        folder.write(SHOT, format!("{:#}\n", provenance(arguments, shot)?).as_bytes())?;
+        // With what the result follows from beside the experiment's text.
+        let mut all = named(json!(shot), shot.units);
+        all["version"] = env!("CARGO_PKG_VERSION").into();
+        all["options"] = recorded(arguments);
+        folder.write(SHOT, format!("{all:#}\n").as_bytes())?;
         folder.write("experiment.toml", experiment.text().as_bytes())?;
         let noise = shot.tolerance.unwrap_or(shot.accuracy_asked);
         let table = csv(&trace, &shown, experiment, noise);
@@ -108,14 +101,6 @@ pub(super) fn write(
 fn title(experiment: &Experiment, shot: &ShotResult) -> String {
     let speed = |speed| format!(", {}", Style::brief(shot.units).quantity(speed, "m/s"));
     format!("{}{}", experiment.title(), shot.speed_m_s.map_or(String::new(), speed))
-}
-
-/// The result, and what it follows from beside the experiment's text.
-fn provenance(arguments: &Arguments, shot: &ShotResult) -> Result<Value, Failure> {
-    let mut all = super::json(shot)?;
-    all["version"] = env!("CARGO_PKG_VERSION").into();
-    all["options"] = recorded(arguments);
-    Ok(all)
 }
 
 fn sampled(plan: &Plan, shot: &Shot, sensors: Vec<Sensor>) -> Result<Trace, Failure> {

@@ -1,7 +1,8 @@
 //! The power laws of a sweep in words.
 
 use crate::missing;
-use crate::program::format::{digits, r_squared, with_error};
+use crate::program::format::r_squared;
+use crate::program::{digits, with_error};
 use hertzchain_experiment::Units;
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
 use hertzchain_sim::{BatchResult, Column};
@@ -30,9 +31,13 @@ fn line(
         Units::Si => (1e-6, " µs", "(v/(1 m/s))"),
         Units::Dimensionless => (1.0, "", "v"),
     };
-    let errors = Errors::of(law, uncertainty.ok());
-    let (prefactor, prefactor_error) = with_error(law.prefactor / size, errors.prefactor / size);
-    let (exponent, exponent_error) = with_error(law.exponent, errors.exponent);
+    // Standard errors, but not less than what the accuracies of the times of flight alone leave open;
+    // only these where two speeds determine no others, and a standard error is not a number.
+    let least = uncertainty.ok();
+    let least = least.map_or([0.0; 2], |it| [law.prefactor * it.prefactor_relative, it.exponent]);
+    let (prefactor, prefactor_error) =
+        with_error(law.prefactor / size, least[0].max(law.prefactor_error) / size);
+    let (exponent, exponent_error) = with_error(law.exponent, least[1].max(law.exponent_error));
     if law.residuals.len() == 2 {
         return format!(
             "{name}: ToF = {prefactor}{unit} · {speed}^({exponent}), through two speeds, which determine no errors\n",
@@ -44,26 +49,6 @@ fn line(
         r_squared(law.r_squared),
         digits(100.0 * law.largest_deviation(), 2),
     )
-}
-
-/// The errors to quote of a fit.
-struct Errors {
-    prefactor: f64,
-    exponent: f64,
-}
-
-impl Errors {
-    /// Standard errors, but not less than what the accuracies of the times of
-    /// flight alone leave open; only these where two speeds determine no others.
-    fn of(law: &PowerLaw, uncertainty: Option<Uncertainty>) -> Self {
-        let (prefactor, exponent) = uncertainty
-            .map_or((0.0, 0.0), |least| (law.prefactor * least.prefactor_relative, least.exponent));
-        // The larger; a standard error that is not a number is none.
-        Self {
-            prefactor: prefactor.max(law.prefactor_error),
-            exponent: exponent.max(law.exponent_error),
-        }
-    }
 }
 
 #[cfg(test)]

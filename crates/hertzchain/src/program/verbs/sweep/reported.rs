@@ -2,11 +2,8 @@
 //! process and merged shards are reported alike.
 
 use super::fits;
-use crate::program::failure::Failure;
-use crate::program::folder::Folder;
-use crate::program::format::{self, Style};
-use crate::program::pictures;
-use crate::program::print::{heading, print};
+use crate::program::print::print;
+use crate::program::{Failure, Folder, Style, format, heading, pictures};
 use crate::{csv, table};
 use hertzchain_experiment::Units;
 use hertzchain_sim::{BatchResult, COLUMNS, Column, Rows};
@@ -28,7 +25,6 @@ const SHOWN: [Shown; 10] = [
     ("its peak", "N", 1.0, Column::CompetingReflectedPeak),
 ];
 
-/// Whether no speed has a shot.
 pub(crate) fn nothing(part: &BatchResult) -> bool {
     part.rows.failed.len() == part.rows.len()
 }
@@ -46,7 +42,6 @@ pub(crate) fn show(part: &BatchResult) -> Result<(), Failure> {
     print(&text)
 }
 
-/// The table under its heading.
 pub(crate) fn rows(part: &BatchResult) -> String {
     let reached = part.rows.column(Column::Accuracy).iter().copied();
     // A number that is none is never the larger one.
@@ -54,7 +49,6 @@ pub(crate) fn rows(part: &BatchResult) -> String {
     format!("{}\n{}", heading(&part.title), lines(style, &part.rows))
 }
 
-/// Whether a column has any value.
 fn reported(rows: &Rows, column: Column) -> bool {
     rows.column(column).iter().any(|value| !value.is_nan())
 }
@@ -80,12 +74,10 @@ fn lines(style: Style, rows: &Rows) -> String {
         head.push("accuracy reached".to_owned());
         columns.push(rows.column(Column::Accuracy).iter().map(text).collect());
     }
-    let row = |i: usize| columns.iter().map(|column| column[i].clone()).collect();
-    let rows: Vec<Vec<String>> = (0..rows.len()).map(row).collect();
-    format::table(&head, &rows)
+    let row = |i: usize| columns.iter().map(move |column| &column[i]).collect::<Vec<_>>();
+    format::table(head, (0..rows.len()).map(row))
 }
 
-/// Writes the table and the figure.
 pub(crate) fn write(mut folder: Folder, part: &BatchResult) -> Result<(), Failure> {
     folder.write("sweep.csv", csv(part).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(part))?;

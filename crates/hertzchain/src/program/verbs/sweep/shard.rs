@@ -2,9 +2,8 @@
 
 use super::Arguments;
 use crate::input::assumed;
-use crate::program::failure::Failure;
-use crate::program::print::{self, print};
-use crate::program::words::lines;
+use crate::program::print::print;
+use crate::program::{Failure, lines, print};
 use hertzchain_sim::{Batch, BatchResult, Column, Shard};
 use std::path::Path;
 use std::time::Instant;
