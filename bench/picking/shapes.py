@@ -20,11 +20,11 @@ STEP_US = 0.1
 TERMS = 11
 SHARE = 1.1
 DIRECTIONS = 4
-ALONE = (0.01, 0.01, 0.02)
+ALONE = (0.04, 0.04, 0.05)
 # The first two directions of incident pulses cover their range evenly: shift of the mean along the
 # first, and factors of both deviations, by the percentiles that are printed.
 EVENLY = (0.8, 1.4, 1.3)
-INEXACT = 1.6e-4
+INEXACT = 1.4e-4
 WHERE = ("incident", "wall", "reflected")
 
 

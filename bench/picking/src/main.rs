@@ -5,6 +5,7 @@
 //! line of a table for each kind of records.
 #![allow(clippy::print_stdout, reason = "the table is what it is for")]
 
+mod comparison;
 mod fault;
 mod row;
 mod tally;
@@ -19,12 +20,17 @@ use tally::Tally;
 const PRESETS: [&str; 4] = ["dry", "pump", "gear", "motor"];
 const SPEEDS_M_S: [f64; 6] = [0.08, 0.2, 0.5, 1.2, 2.0, 2.5];
 const USAGE: &str = "usage: hertzchain-picking [SHOTS] [--seed N] [--only TEXT] [--each] \
-                     [--chains N] [--first N] [--write FOLDER]";
+                     [--alone] [--compare] [--chains N] [--first N] [--write FOLDER]";
 const HEADER: &str = "\
 | records | shots | timed | counted | incident: within 1.96, % | made/stated | reflected: % | made/stated \
 | counted, incident: % | made/stated | reflected: % | made/stated | returns | χ² of means, incident \
 | reflected | χ² of exponents, incident | reflected | correlation made | stated | worst row, incident | reflected |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
+
+const COMPARED: &str = "\
+| records | incident, ns: default | quartic | averaged | default within 1.1 of the best, most \
+| reflected, ns: default | quartic | averaged | default within 1.1 of the best, most |
+|---|---|---|---|---|---|---|---|---|";
 
 /// What the command line asks for.
 #[derive(Default)]
@@ -33,6 +39,10 @@ struct Options {
     seed: u64,
     only: String,
     each: bool,
+    /// Whether each shot is picked alone.
+    alone: bool,
+    /// Whether a quartic and averaged pulses pick the same records.
+    compare: bool,
     /// So many chains at random in place of the presets' rows, from this number on.
     chains: u64,
     first: u64,
@@ -51,6 +61,8 @@ impl Options {
                 "--first" => options.first = words.next().ok_or(USAGE)?.parse()?,
                 "--write" => options.write = words.next().map(PathBuf::from),
                 "--each" => options.each = true,
+                "--alone" => options.alone = true,
+                "--compare" => options.compare = true,
                 count => options.shots = count.parse().map_err(|_| USAGE)?,
             }
         }
@@ -73,14 +85,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         return Ok(());
     }
-    println!("{HEADER}");
+    println!("{}", if options.compare { COMPARED } else { HEADER });
     for (name, faults) in families() {
         if !name.contains(&options.only) {
             continue;
         }
         for (name, fault) in faults {
-            let tally = Tally::of(&rows, &fault, options.shots, options.seed, options.each);
-            println!("{}", line(&name, &tally));
+            let tally = Tally::of(&rows, &fault, &options);
+            match options.compare {
+                true => println!("| {name} | {} |", tally.comparison.cells()),
+                false => println!("{}", line(&name, &tally)),
+            }
         }
     }
     Ok(())
@@ -139,7 +154,10 @@ fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
         levels.iter().map(|level| of(*level)).collect()
     };
     let mut families = vec![
-        ("noise", each(&[20.0, 30.0, 40.0, 60.0, 80.0], &|db| (format!("{db} dB"), at(db)))),
+        (
+            "noise",
+            each(&[20.0, 25.0, 30.0, 40.0, 50.0, 60.0, 80.0], &|db| (format!("{db} dB"), at(db))),
+        ),
         (
             "speeds",
             each(&[30.0, 40.0, 60.0], &|db| {

@@ -1,16 +1,18 @@
 //! Errors made beside errors stated, of shots, means and power laws.
 
+use crate::Options;
+use crate::comparison::Comparison;
 use crate::fault::{Fault, record, volts};
 use crate::row::Row;
 use hertzchain_measure::signal::{
     Channels, Estimate, PowerLaw, SignalOptions, coverage, measure, power_law_both_errors,
 };
-use hertzchain_measure::{Curves, Grouping, Shot};
+use hertzchain_measure::{Curves, Grouping, Measurement, Shot};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// Shots that make one mean.
-const SERIES: u64 = 20;
+const SERIES: usize = 20;
 const WITHIN: f64 = 1.96;
 
 /// Errors of incident and reflected times over the stated ones.
@@ -33,6 +35,7 @@ pub(crate) struct Tally {
     pub correlations: Vec<(f64, f64)>,
     /// Coverage of the worst row of those with 10 shots or more that count.
     pub worst: [(f64, String); 2],
+    pub comparison: Comparison,
 }
 
 impl Pulls {
@@ -68,18 +71,31 @@ impl Pulls {
 
 impl Tally {
     /// Of so many shots of each row.
-    pub(crate) fn of(rows: &[Row], fault: &Fault, shots: u64, seed: u64, each: bool) -> Self {
+    pub(crate) fn of(rows: &[Row], fault: &Fault, options: &Options) -> Self {
         let mut tally =
             Self { worst: [(100.0, String::new()), (100.0, String::new())], ..Self::default() };
         let mut series: Vec<Vec<Shot>> = Vec::new();
         for (number, row) in rows.iter().enumerate() {
             let volts = volts(row, fault);
-            let mut own = Vec::new();
             let (mut all, mut counted) = (Pulls::default(), Pulls::default());
-            for shot in 0..shots {
-                let mut rng = ChaCha8Rng::seed_from_u64(seed);
-                rng.set_stream(shot + shots * number as u64);
-                let shot = shot_of(row, &volts, fault, &mut rng);
+            let drawn = |shot: u64| {
+                let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+                rng.set_stream(shot + options.shots * number as u64);
+                record(row, &volts, fault, &mut rng)
+            };
+            let records: Vec<_> = (0..options.shots).map(drawn).collect();
+            let own: Vec<Vec<Shot>> = records
+                .chunks(SERIES)
+                .map(|records| measured(row, records, fault, options.alone))
+                .collect();
+            if options.compare && !fault.separate {
+                let series = records.chunks(SERIES).zip(&own);
+                let series = series.map(|(records, shots)| {
+                    (records.iter().map(|one| &one.0[0][..]).collect(), &shots[..])
+                });
+                tally.comparison.add(row, &series.collect::<Vec<_>>());
+            }
+            for shot in own.iter().flatten() {
                 tally.shots += 1;
                 let counts = !shot.is_dubious();
                 if let Ok(flight) = &shot.flight {
@@ -97,9 +113,8 @@ impl Tally {
                         }
                     }
                 }
-                own.push(shot);
             }
-            if each {
+            if options.each {
                 println!(
                     "|   {} {} | | {} | {} | {} | {}",
                     row.name,
@@ -113,11 +128,11 @@ impl Tally {
             tally.note_worst(row, &counted);
             tally.all.extend(&all);
             tally.of_counted.extend(&counted);
-            for (number, chunk) in own.chunks(SERIES as usize).enumerate() {
+            for (number, shots) in own.into_iter().enumerate() {
                 if series.len() <= number {
                     series.push(Vec::new());
                 }
-                series[number].extend(chunk.iter().cloned());
+                series[number].extend(shots);
             }
         }
         for shots in &series {
@@ -155,8 +170,7 @@ impl Tally {
                     continue;
                 };
                 let pulls = [0, 1].map(|time| {
-                    let mean =
-                        row.at_mean_speed_s[time].filter(|_| row.shots.0 as u64 == SERIES)?;
+                    let mean = row.at_mean_speed_s[time].filter(|_| row.shots.0 == SERIES)?;
                     Some((mean.value - true_s[time]) / mean.sigma)
                 });
                 for (all, pull) in self.means.0.iter_mut().zip(pulls) {
@@ -192,8 +206,17 @@ fn exact(points: &[(Estimate, f64, f64)]) -> Option<PowerLaw> {
     power_law_both_errors(&speeds, &errors, &times, &sigmas).ok()
 }
 
-fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -> Shot {
-    let (samples, speed_m_s) = record(row, volts, fault, rng);
+/// A series of records as shots, whose pulses have one shape in common unless each is picked alone.
+fn measured(row: &Row, records: &[(Vec<Vec<f64>>, f64)], fault: &Fault, alone: bool) -> Vec<Shot> {
+    let shots = records.iter().map(|record| shot_of(row, record, fault)).collect();
+    let mut measurement = Measurement { shots, ..Measurement::default() };
+    if !alone {
+        measurement.curves(&Grouping::default());
+    }
+    measurement.shots
+}
+
+fn shot_of(row: &Row, (samples, speed_m_s): &(Vec<Vec<f64>>, f64), fault: &Fault) -> Shot {
     let channels = match &samples[..] {
         [sensor, wall] => Channels::Separate { sensor, wall },
         one => Channels::Summed(&one[0]),
@@ -203,9 +226,9 @@ fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -
         ..SignalOptions::default()
     };
     let interval_s = fault.rate_hz.recip();
-    let (flight, doubts) = match measure(channels, interval_s, &measuring) {
-        Ok(shot) => (shot.flight, shot.found.flags),
-        Err(error) => (Err(error), Vec::new()),
+    let (flight, doubts, samples) = match measure(channels, interval_s, &measuring) {
+        Ok(shot) => (shot.flight, shot.found.flags, shot.samples),
+        Err(error) => (Err(error), Vec::new(), [const { None }; 3]),
     };
     Shot {
         source: String::new(),
@@ -213,7 +236,7 @@ fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -
         shot: None,
         case: row.name.to_owned(),
         programmed_speed_m_s: Some(row.speed_m_s),
-        speed_m_s: Some(Estimate { value: speed_m_s, sigma: 1e-9 }),
+        speed_m_s: Some(Estimate { value: *speed_m_s, sigma: 1e-9 }),
         interval_s,
         flight,
         doubts,
@@ -222,5 +245,6 @@ fn shot_of(row: &Row, volts: &[Vec<f64>], fault: &Fault, rng: &mut ChaCha8Rng) -
         gap_in_pulse: false,
         holds_several: false,
         excluded: false,
+        samples,
     }
 }

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::measure::{self, MeasureResult};
 use crate::options::MeasureOptions;
-use hertzchain_measure::{Curves, Measurement, Options, ShotList};
+use hertzchain_measure::{Measurement, Options, ShotList};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -102,7 +102,7 @@ impl LiveMeasurement {
         for (_, of_file) in self.measured.values() {
             shots.append(of_file.clone());
         }
-        let curves = Curves::of(&shots.shots, &measure::grouping(&self.arguments));
+        let curves = shots.curves(&measure::grouping(&self.arguments));
         MeasureResult { shots, curves }
     }
 

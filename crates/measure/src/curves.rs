@@ -150,13 +150,13 @@ impl Curves {
 
 /// The speed by which a shot is grouped: the programmed one, if it is known.
 #[derive(Clone, Copy)]
-struct GroupSpeed {
+pub(crate) struct GroupSpeed {
     m_s: f64,
     is_programmed: bool,
 }
 
 impl GroupSpeed {
-    fn new(shot: &Shot) -> Option<Self> {
+    pub(crate) fn new(shot: &Shot) -> Option<Self> {
         let own = shot.true_speed().map(|speed| speed.value);
         Some(Self {
             m_s: shot.programmed_speed_m_s.or(own)?,
@@ -201,7 +201,7 @@ impl Case {
         let mut untimed: Vec<GroupSpeed> =
             untimed.filter_map(|shot| GroupSpeed::new(shot)).collect();
         let (mut rows, mut none) = (Vec::new(), Vec::<(GroupSpeed, usize)>::new());
-        for group in grouped(&timed, gap_m_s) {
+        for group in grouped(&timed, |shot| shot.group, gap_m_s) {
             let before = untimed.len();
             untimed.retain(|at| !group.iter().any(|shot| shot.group.is_same(at, gap_m_s)));
             let of_this = before - untimed.len();
@@ -246,11 +246,15 @@ impl Case {
 }
 
 /// Shots of one programmed speed, then those that have none by their speeds.
-fn grouped<'a>(timed: &[Timed<'a>], gap_m_s: f64) -> Vec<Vec<Timed<'a>>> {
-    let by = |programmed: bool, gap_m_s: f64| -> Vec<Vec<Timed<'a>>> {
-        let of = timed.iter().filter(|shot| shot.group.is_programmed == programmed);
-        let of: Vec<Timed<'_>> = of.copied().collect();
-        let speeds: Vec<f64> = of.iter().map(|shot| shot.group.m_s).collect();
+pub(crate) fn grouped<T: Copy>(
+    all: &[T],
+    speed: impl Fn(&T) -> GroupSpeed,
+    gap_m_s: f64,
+) -> Vec<Vec<T>> {
+    let by = |programmed: bool, gap_m_s: f64| -> Vec<Vec<T>> {
+        let of = all.iter().filter(|one| speed(one).is_programmed == programmed);
+        let of: Vec<T> = of.copied().collect();
+        let speeds: Vec<f64> = of.iter().map(|one| speed(one).m_s).collect();
         let pick = |group: Vec<usize>| group.iter().map(|index| of[*index]).collect();
         groups(&speeds, gap_m_s).into_iter().map(pick).collect()
     };

@@ -11,6 +11,7 @@ pub mod records;
 pub mod signal;
 
 mod ambiguous;
+mod common_shape;
 mod correlation;
 mod curves;
 mod error;

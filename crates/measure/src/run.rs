@@ -4,7 +4,7 @@ use crate::error::file_name;
 use crate::level::shots_at_level;
 use crate::records::{Parts, ReadOptions, Record, Records, read};
 use crate::separation::{Content, content};
-use crate::signal::{Bandwidth, Method, QualityFlag, SignalOptions};
+use crate::signal::{Bandwidth, Method, PulseSamples, QualityFlag, SignalOptions};
 use crate::{Example, Level, MeasureError, Shot, ShotList};
 use indexmap::IndexMap;
 use rayon::prelude::*;
@@ -16,6 +16,9 @@ const BATCH: usize = 1 << 22;
 
 /// Samples of a recording that are searched for a level at a time.
 const PIECE: usize = 1 << 20;
+
+/// Samples about pulses that shots hold, some 250 MB: later shots hold none, and keep their own picks.
+const MOST_HELD: usize = 1 << 26;
 
 /// How recordings are read and measured.
 #[derive(Clone, Debug, Default)]
@@ -68,6 +71,8 @@ pub struct Measurement {
     pub examples: Vec<Example>,
     /// The first flagged shots, with their samples, as many as were asked for.
     pub flagged: Vec<Example>,
+    /// Samples about pulses that its shots hold, for one shape of all shots of a speed.
+    pub samples_held: usize,
 }
 
 /// An assumption.
@@ -243,6 +248,7 @@ impl Measurement {
     /// Appends shots, refusals and notes of further recordings.
     pub fn append(&mut self, other: Self) {
         self.shots.extend(other.shots);
+        self.samples_held += other.samples_held;
         self.refused.extend(other.refused);
         for Note { text, files } in other.notes {
             files.iter().for_each(|file| self.note(&text, file));
@@ -283,6 +289,7 @@ impl Measurement {
                 shot.source = format!("{}, shot {number}", record.source);
             }
             shot.identify(record.speed_error_m_s, options);
+            self.hold_samples(&mut shot);
             let mut examples = self.examples.iter();
             let is_new = !examples.any(|example| example.shot.case == shot.case);
             if shot.flight.is_ok() && is_new {
@@ -292,6 +299,14 @@ impl Measurement {
                 self.flagged.push(Example::new(&shot, record, range));
             }
             self.shots.push(shot);
+        }
+    }
+
+    fn hold_samples(&mut self, shot: &mut Shot) {
+        let own: usize = shot.samples.iter().flatten().map(PulseSamples::count).sum();
+        match self.samples_held + own > MOST_HELD {
+            true => shot.samples = [const { None }; 3],
+            false => self.samples_held += own,
         }
     }
 

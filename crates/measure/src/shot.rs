@@ -6,7 +6,7 @@ use crate::records::Record;
 use crate::run::{stated_bandwidth, stated_high_pass_hz};
 use crate::signal::{
     Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, Picked, Picks, PulseKind,
-    QualityFlag, SensorCalibration, SignalOptions,
+    PulseSamples, QualityFlag, SensorCalibration, SignalOptions,
 };
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -43,6 +43,8 @@ pub struct Shot {
     pub holds_several: bool,
     /// Whether the list of shots says that it does not count.
     pub excluded: bool,
+    /// Samples about its pulses, as [`Measured::samples`].
+    pub samples: [Option<PulseSamples>; 3],
 }
 
 impl Shot {
@@ -68,13 +70,13 @@ impl Shot {
             ..asked.clone()
         };
         let measured = crate::signal::measure(channels, record.interval_s, &measuring);
-        let (flight, doubts) = match measured {
-            Ok(Measured { found, flight }) => {
+        let (flight, doubts, samples) = match measured {
+            Ok(Measured { found, flight, samples }) => {
                 let relative = record.interval_error_s / record.interval_s;
                 let widened = flight.map(|flight| flight.with_interval_error(relative));
-                (widened, found.flags)
+                (widened, found.flags, samples)
             }
-            Err(error) => (Err(error), Vec::new()),
+            Err(error) => (Err(error), Vec::new(), [const { None }; 3]),
         };
         let in_pulse = |flight: &Flight| record.gaps.iter().any(|gap| lies_in(gap, flight, record));
         let filled = record.gaps.iter().map(Range::len).sum();
@@ -93,6 +95,7 @@ impl Shot {
             untriggered: record.triggered == Some(false),
             holds_several: false,
             excluded: false,
+            samples,
         }
     }
 
@@ -139,6 +142,7 @@ impl Shot {
             let own = picks.pulse(kind).unwrap_or(Picked::UNKNOWN);
             picks.set(kind, own.by_fit(time_s, sigma_s, None));
             picks.competing[kind as usize] = None;
+            self.samples[kind as usize] = None;
             self.doubts.retain(|flag| flag.pulse() != Some(kind));
             self.doubts.push(QualityFlag::ByHand(kind));
         }

@@ -18,7 +18,7 @@ mod evaluated;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::gauge::{Chains, Gauge, known_oils};
 use hertzchain_infer::{Data, Defaults, Observable, Selection};
-use hertzchain_measure::{Curves, Grouping, Options, measure, speeds_csv};
+use hertzchain_measure::{Grouping, Options, measure, speeds_csv};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -97,8 +97,8 @@ fn measured(text: &str, trial: u64, under: &Path) -> Result<String, Box<dyn Erro
     }
     files.retain(|file| file.extension().is_some_and(|ending| ending == "h5"));
     files.sort();
-    let shots = measure(&files, &Options::default(), &()).shots;
-    Ok(speeds_csv(&Curves::of(&shots, &Grouping::default())))
+    let mut measured = measure(&files, &Options::default(), &());
+    Ok(speeds_csv(&measured.curves(&Grouping::default())))
 }
 
 /// Holds every liquid against the oils, by both times and by incident times alone.

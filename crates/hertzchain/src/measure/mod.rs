@@ -115,9 +115,9 @@ pub struct MeasureResult {
 
 impl MeasureResult {
     /// Of shots, if the options suit them.
-    pub(crate) fn new(shots: Measurement, options: &Arguments) -> Result<Self, Failure> {
+    pub(crate) fn new(mut shots: Measurement, options: &Arguments) -> Result<Self, Failure> {
         suits(&shots)?;
-        let curves = Curves::of(&shots.shots, &grouping(options));
+        let curves = shots.curves(&grouping(options));
         inference::wanted()?;
         Ok(Self { shots, curves })
     }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::error::{MeasureError, Result};
 use crate::signal::drift::Detrended;
 use crate::signal::find::conditioned_pulses;
-use crate::signal::pick::pick;
+use crate::signal::pick::{PulseSamples, pick};
 use crate::signal::{
     Bandwidth, Channels, CompetingPick, Estimate, FindOptions, Found, LowPass, Method, Picked,
     Picks, Polarity, Pulse, PulseKind, QualityFlag, Systematic, invert_high_pass, normalisation,
@@ -63,6 +63,8 @@ pub struct Measured {
     pub found: Found,
     /// Times of flight, or why there are none.
     pub flight: Result<Flight>,
+    /// Samples about its pulses, from which shots of one speed have one shape.
+    pub samples: [Option<PulseSamples>; 3],
 }
 
 /// Finds and picks the pulses of one shot.
@@ -115,14 +117,20 @@ pub fn measure(
     let ranges = if changed { [None; 2] } else { find.ranges(channels) };
     let corrections = (ranges, options.bandwidth);
     let picks = pick(channels, interval_s, &found, &options.method, corrections);
-    let calibrated = |picks| with_drift(picks, &drifts, interval_s).calibrated(options.calibration);
-    let flight = picks.map(|picks| calibrated(picks).flight());
+    let (picks, mut samples) = match picks {
+        Ok((picks, samples)) => (Ok(picks), samples),
+        Err(error) => (Err(error), [const { None }; 3]),
+    };
+    let calibrated = |picks| {
+        with_drift(picks, &mut samples, &drifts, interval_s).calibrated(options.calibration)
+    };
+    let flight = picks.map(calibrated).map(Picks::flight);
     let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     let not_picked = none_reflected && found.reflected.is_some();
     found.flag(not_picked.then_some(QualityFlag::NotPicked(PulseKind::Reflected)));
     found.flag((spikes > 0).then_some(QualityFlag::Spikes(spikes)));
     found.flag(has_drift.then_some(QualityFlag::Drift));
-    Ok(Measured { found, flight })
+    Ok(Measured { found, flight, samples })
 }
 
 fn channels_of<T: AsRef<[f64]>>(samples: &[T]) -> Channels<'_> {
@@ -142,18 +150,27 @@ fn drift(found: &Found, channels: &[Cow<'_, [f64]>], which: usize) -> Option<Det
     Detrended::new(&channels[which], &pulses, time as f64)
 }
 
-fn with_drift(mut picks: Picks, drifts: &[Option<Detrended>], interval_s: f64) -> Picks {
+fn with_drift(
+    mut picks: Picks,
+    samples: &mut [Option<PulseSamples>; 3],
+    drifts: &[Option<Detrended>],
+    interval_s: f64,
+) -> Picks {
     let last = drifts.len() - 1;
-    let widen = |pick: &mut Picked, which: usize| {
+    let mut widen = |pick: &mut Picked, kind: PulseKind| {
+        let which = usize::from(kind == PulseKind::Wall);
         if let Some(drift) = &drifts[which.min(last)] {
             let [at, width] = [pick.time_s, pick.width_s].map(|s| s / interval_s);
             let error_s = drift.time_error(at, pick.height, width) * interval_s;
             pick.sigma_s = pick.sigma_s.hypot(error_s);
+            if let Some(samples) = &mut samples[kind as usize] {
+                samples.of_drift_s = error_s;
+            }
         }
     };
-    widen(&mut picks.incident, 0);
-    widen(&mut picks.wall, 1);
-    picks.reflected.iter_mut().for_each(|back| widen(back, 0));
+    widen(&mut picks.incident, PulseKind::Incident);
+    widen(&mut picks.wall, PulseKind::Wall);
+    picks.reflected.iter_mut().for_each(|back| widen(back, PulseKind::Reflected));
     picks
 }
 

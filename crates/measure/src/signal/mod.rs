@@ -44,7 +44,10 @@ pub use self::{
         Pulse, PulseKind, PulseLimits, QualityFlag, normalisation, pulses,
     },
     flight::{Flight, Measured, SensorCalibration, SignalOptions, measure, without_systematic},
-    pick::{CompetingPick, Method, Picked, Picks, Shape, Systematic, delay_by_cross_correlation},
+    pick::{
+        CompetingPick, Method, Picked, Picks, PulseSamples, Shape, Systematic,
+        delay_by_cross_correlation,
+    },
     power_law::{FitError, PowerLaw, Uncertainty, power_law, power_law_both_errors, uncertainty},
     spikes::without_spikes,
     statistics::{
@@ -53,5 +56,5 @@ pub use self::{
     },
 };
 pub(crate) use self::{
-    filters::invert_high_pass, flight::mean_systematic, statistics::ratios_at_common,
+    filters::invert_high_pass, flight::mean_systematic, pick::pool, statistics::ratios_at_common,
 };

@@ -111,7 +111,7 @@ fn times_of_shots_with_spikes_are_as_right_as_stated_and_the_spikes_are_counted(
         for seed in 0..30 {
             let (samples, _) = spiked(3e-3, height, seed);
             let channels = Channels::Summed(&samples);
-            let Measured { found, flight } =
+            let Measured { found, flight, .. } =
                 measure(channels, 1e-6, &SignalOptions::default()).unwrap();
             let incident = flight.unwrap().incident_s;
             let pull = (incident.value - exact) / incident.sigma;

@@ -37,6 +37,7 @@ fn measured(shots: usize) -> Measurement {
         gap_in_pulse: false,
         holds_several: false,
         excluded: false,
+        samples: [const { None }; 3],
     };
     Measurement {
         shots: vec![shot; shots],

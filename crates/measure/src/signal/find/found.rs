@@ -203,6 +203,13 @@ impl Pulse {
         ((fall / rise - SYMMETRIC) / (ASYMMETRIC - SYMMETRIC)).clamp(0.0, 1.0)
     }
 
+    /// The same for whichever side is the slower: how unusual a shape it has.
+    pub(crate) fn skewness(&self) -> f64 {
+        let (rise, fall) = self.sides_samples;
+        let slower = (rise / fall).max(fall / rise);
+        ((slower - SYMMETRIC) / (ASYMMETRIC - SYMMETRIC)).clamp(0.0, 1.0)
+    }
+
     /// The same with so many samples on either side of a clipped top counted as clipped, too.
     pub(crate) fn with_clipped_spread(&self, samples: usize) -> Self {
         let spread =

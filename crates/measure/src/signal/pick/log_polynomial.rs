@@ -12,9 +12,11 @@ use std::f64::consts::LN_2;
 
 /// Full width of the fit to a whole pulse in widths of the steeper flank: down to two fifths of the
 /// maximum, above the kink with which the rise begins in fast dry shots.
-const WHOLE_WIDTH: f64 = 1.1;
+pub(super) const WHOLE_WIDTH: f64 = 1.1;
 /// The same where a clipped top is searched for: down to a third of the maximum.
 pub(super) const WIDTH: f64 = 1.2;
+/// Noise over height above which the flanks do not show which is the steeper.
+const NOISY: f64 = 0.05;
 /// Degree of the logarithm: pulses of computed dry and wet rows between 0.1 and
 /// 1.2 m/s are followed to 30 ns.
 pub(super) const DEGREE: usize = MOST - 1;
@@ -26,24 +28,56 @@ const SHAPE: usize = 3;
 pub(super) const LEVEL: usize = MOST - 1;
 /// How much of a clipped bell may be cut off, as a logarithm: half of its height and more.
 pub(super) const CUT_OFF: f64 = 0.4;
-/// Mean coefficients, from the first beyond a Gaussian's on, and their standard deviation over the
-/// usual width of incident, wall's and reflected pulses: of computed rows, dry and wet, from 0.06 to
-/// 2.4 m/s, whose own deviations are 0.07 to 0.27, 0 to 0.11 and 0.06 to 0.34.
-const SHAPES: [([f64; MOST - SHAPE], f64); 3] = [
-    ([0.11, -0.22, -0.21, 0.22, 0.19, -0.17, -0.06, 0.05], 0.25),
-    ([0.07, -0.02, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0], 0.17),
-    ([-0.03, -0.26, 0.01, 0.07, 0.0, 0.04, 0.0, -0.03], 0.23),
+/// Shapes of computed pulses over the usual width, from the first coefficient beyond a Gaussian's on.
+struct Shapes {
+    mean: [f64; MOST - SHAPE],
+    /// One deviation of coefficients together along each of the largest directions.
+    together: [[f64; MOST - SHAPE]; 4],
+    /// Deviation of each alone.
+    alone: f64,
+}
+
+/// Of incident, wall's and reflected pulses of 1,000 chains at random, dry and wet, from 0.06 to
+/// 2.5 m/s (`bench/picking/shapes.py`).
+const SHAPES: [Shapes; 3] = [
+    Shapes {
+        mean: [0.24, -0.19, -0.42, 0.14, 0.35, -0.1, -0.1, 0.03],
+        together: [
+            [0.23, 0.09, -0.39, -0.07, 0.3, 0.03, -0.09, -0.01],
+            [0.0, 0.14, 0.05, -0.26, -0.06, 0.21, 0.02, -0.07],
+            [0.0, -0.08, -0.01, -0.01, 0.0, 0.04, 0.0, -0.01],
+            [0.02, 0.0, 0.0, 0.0, -0.01, 0.0, 0.01, 0.0],
+        ],
+        alone: 0.04,
+    },
+    Shapes {
+        mean: [0.01, -0.02, 0.02, 0.01, 0.0, 0.0, 0.0, 0.0],
+        together: [
+            [0.05, 0.0, -0.03, 0.0, 0.01, 0.0, 0.0, 0.0],
+            [0.01, 0.02, 0.02, 0.0, -0.01, 0.0, 0.0, 0.0],
+            [0.0; 8],
+            [0.0; 8],
+        ],
+        alone: 0.04,
+    },
+    Shapes {
+        mean: [-0.03, -0.28, -0.01, 0.14, 0.04, -0.05, -0.01, 0.01],
+        together: [
+            [0.13, -0.03, -0.19, 0.03, 0.16, -0.03, -0.05, 0.01],
+            [0.0, 0.13, -0.04, -0.14, 0.02, 0.1, 0.0, -0.03],
+            [0.05, -0.07, 0.0, -0.02, -0.03, 0.06, 0.01, -0.03],
+            [0.06, 0.04, 0.0, 0.01, -0.04, -0.02, 0.02, 0.0],
+        ],
+        alone: 0.05,
+    },
 ];
-/// One deviation, more, of the coefficients of incident pulses together: from slow shots to fast dry
-/// ones, whose rise begins with a kink.
-const KINK: [f64; MOST - SHAPE] = [0.26, 0.0, -0.43, 0.0, 0.35, 0.0, -0.1, 0.0];
 /// Residuals of bells fitted to computed pulses without noise, as a share of the height, at the top
 /// and in flanks that are fitted farther down: up to 2.5 m/s their rise begins with a kink.
-const INEXACT: (f64, f64) = (1.6e-4, 4e-4);
+pub(super) const INEXACT: (f64, f64) = (1.4e-4, 4e-4);
 /// Deviations by which the squares that a fit leaves may exceed those of noise.
 const ADEQUATE: f64 = 3.0;
 /// Shares of the window that are tried, in this order, where a bell leaves more than noise.
-const NARROWER: [f64; 4] = [1.0, 0.8, 0.65, 0.5];
+pub(super) const NARROWER: [f64; 4] = [1.0, 0.8, 0.65, 0.5];
 /// Samples beside a clipped top that are left out, too, as a share of the width, where a window of
 /// no length is tried: amplifiers round the corners.
 const SOFT: f64 = 0.3;
@@ -55,15 +89,23 @@ const SOFT: f64 = 0.3;
 /// model goes all the way from smooth to close, and the stated error holds what it leaves open of
 /// the shape. Where more is left than noise, the error grows by as much.
 pub(super) fn pick(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
-    let half = 0.5 * WHOLE_WIDTH * pulse.steep_width_samples();
+    let half = half_width(pulse, view.broad_noise(pulse));
     let tries = NARROWER.iter().map(|share| {
         let window = BellWindow {
             half: (share * half).max(4.0),
-            prior: ShapePrior::of_whole(pulse, *share),
+            prior: ShapePrior::of_whole(pulse.kind, pulse.skewness(), *share),
         };
         Some((fit_about(view, pulse, pulse.at as f64, &window)?, *share))
     });
     first_adequate(tries)
+}
+
+/// Half the usual width of a fit in samples. In noise, which widens either side or narrows it, the
+/// shorter one is too short.
+pub(super) fn half_width(pulse: &Pulse, noise: f64) -> f64 {
+    let noisy = noise > NOISY * pulse.height;
+    let width = if noisy { pulse.width_samples } else { pulse.steep_width_samples() };
+    0.5 * WHOLE_WIDTH * width
 }
 
 /// As [`pick`], of a pulse whose top is clipped: its flanks are fitted, farther down, and
@@ -107,58 +149,56 @@ struct BellWindow {
     prior: ShapePrior,
 }
 
-/// Mean and standard deviation of each coefficient beyond a Gaussian's, independent of the samples.
+/// Prior of the coefficients beyond a Gaussian's.
 #[derive(Clone, Copy)]
 pub(super) struct ShapePrior {
     mean: Row,
-    deviation: Row,
-    /// One deviation, more, of all of them together.
-    together: Row,
+    /// Inverse root of the covariance: by its rows, coefficients less their means are independent
+    /// and of deviation 1.
+    root: [Row; MOST],
 }
 
 impl ShapePrior {
     /// Of a whole pulse over a share of the usual width. An asymmetric one is of no usual shape, and
     /// its coefficients may be as large as those of any.
-    fn of_whole(pulse: &Pulse, share: f64) -> Self {
-        let (means, usual) = SHAPES[pulse.kind as usize];
-        let deviation = usual + (1.0 - usual) * pulse.asymmetry();
+    pub(super) fn of_whole(kind: PulseKind, asymmetry: f64, share: f64) -> Self {
+        let Shapes { mean, together, alone } = &SHAPES[kind as usize];
         let powers = powers(share);
-        let scaled = |of: [f64; MOST - SHAPE]| -> Row {
+        let scaled = |of: &[f64; MOST - SHAPE]| -> Row {
             from_fn(|k| k.checked_sub(SHAPE).map_or(0.0, |i| of[i] * powers[k]))
         };
-        let kink = match pulse.kind {
-            PulseKind::Incident => KINK,
-            _ => [0.0; MOST - SHAPE],
-        };
-        Self {
-            mean: scaled(means),
-            deviation: powers.map(|power| deviation * power),
-            together: scaled(kink),
-        }
+        let alone = powers.map(|power| alone.hypot(asymmetry) * power);
+        Self::new(scaled(mean), alone, &together.each_ref().map(scaled))
     }
 
     /// Of a pulse of unknown shape over so many times the usual width, over which coefficients are
     /// 0 ± 1; even ones times another factor.
     pub(super) fn of_flanks(widths: f64, even: f64) -> Self {
-        let mut deviation = powers(widths);
-        let even_ones = deviation.iter_mut().skip(SHAPE + 1).step_by(2);
+        let mut alone = powers(widths);
+        let even_ones = alone.iter_mut().skip(SHAPE + 1).step_by(2);
         even_ones.for_each(|one| *one *= even);
-        Self { mean: [0.0; MOST], deviation, together: [0.0; MOST] }
+        Self::new([0.0; MOST], alone, &[])
     }
 
-    /// Row k of the inverse root of the covariance: by it, coefficients less their means are
-    /// independent and of deviation 1. Of D² + t tᵀ it is (1 − γ v vᵀ) D⁻¹, with D⁻¹ t = |D⁻¹ t| v.
-    fn row(&self, k: usize) -> Row {
-        let over = |j: usize| self.together[j] / self.deviation[j];
-        let squared: f64 = (SHAPE..MOST).map(|j| over(j).powi(2)).sum();
-        let share = match squared > 0.0 {
-            true => (1.0 - (1.0 + squared).sqrt().recip()) / squared,
-            false => 0.0,
-        };
-        from_fn(|j| {
-            let own = f64::from(u8::from(j == k));
-            (own - share * over(k) * over(j)) / self.deviation[j]
-        })
+    /// Of coefficients that vary each alone by a deviation, and along directions together by one
+    /// more: the inverse of the Cholesky factor of that covariance.
+    fn new(mean: Row, alone: Row, together: &[Row]) -> Self {
+        let (mut factor, mut root) = ([[0.0; MOST]; MOST], [[0.0; MOST]; MOST]);
+        for j in SHAPE..MOST {
+            for k in SHAPE..=j {
+                let shared: f64 = together.iter().map(|row| row[j] * row[k]).sum();
+                let own = if j == k { alone[j] * alone[j] } else { 0.0 };
+                let known: f64 = (SHAPE..k).map(|i| factor[j][i] * factor[k][i]).sum();
+                let left = shared + own - known;
+                factor[j][k] = if j == k { left.sqrt() } else { left / factor[k][k] };
+            }
+            root[j] = from_fn(|k| {
+                let known: f64 = (SHAPE..j).map(|i| factor[j][i] * root[i][k]).sum();
+                let own = if j == k { 1.0 } else { 0.0 };
+                (own - known) / factor[j][j]
+            });
+        }
+        Self { mean, root }
     }
 }
 
@@ -196,8 +236,57 @@ fn inexact(pulse: &Pulse) -> f64 {
     (if clipped { INEXACT.1 } else { INEXACT.0 }) * pulse.height
 }
 
-/// At the top the logarithm's slope is 0, so slope and curvature of the pulse itself
-/// are its height times those of the logarithm.
+/// The maximum of a bell whose logarithm is a polynomial, in units of u, before an amplifier's
+/// low-pass. At the top the logarithm's slope is 0, so slope and curvature of the pulse itself are its
+/// height times those of the logarithm.
+pub(super) struct BellTop {
+    pub(super) u: f64,
+    /// Logarithm of the height, and its curvature.
+    pub(super) log_height: f64,
+    pub(super) curvature: f64,
+    /// Variances for unit noise: of the logarithm of the height, of its slope and curvature.
+    pub(super) height_variance: f64,
+    pub(super) slope_variance: f64,
+    pub(super) curvature_variance: f64,
+    /// The part of the slope's that is of the shape, which the samples leave open.
+    pub(super) open_variance: f64,
+}
+
+impl BellTop {
+    /// Near the maximum u of the logarithm, of samples with so much noise, of which a part is what
+    /// bells leave of a pulse: it is the same in all of a pulse's shots.
+    pub(super) fn new(
+        fit: &LocalPolynomial,
+        (u, inverse): (f64, [f64; 2]),
+        prior: &ShapePrior,
+        (noise, inexact): (f64, f64),
+    ) -> Option<Self> {
+        let before = Slope::zero(fit, inverse, u)?;
+        let slope = Slope::new(fit, inverse, before);
+        let variances = fit.variances(u);
+        let slope_variance = fit.solution.variance(&slope.row);
+        // What the prior leaves open: C P C with C the covariance and P that of the prior.
+        let along = fit.solution.covariance_with(&slope.row);
+        let open = (SHAPE..MOST).map(|k| noise * shape_product(&along, &prior.root[k]));
+        let open: f64 = open.map(|open| open * open).sum();
+        let of_inexact = (inexact / noise).powi(2) * slope_variance;
+        Some(Self {
+            u: before,
+            log_height: fit.at(u).value,
+            curvature: slope.derivative,
+            height_variance: variances.value,
+            slope_variance,
+            curvature_variance: variances.curvature,
+            open_variance: (open + of_inexact).min(slope_variance),
+        })
+    }
+}
+
+/// Whether a bell over `noise` leaves no more than that.
+fn is_adequate(fit: &LocalPolynomial, noise: f64) -> bool {
+    (fit.residual / noise).powi(2) <= 1.0 + ADEQUATE * (2.0 / fit.freedom).sqrt()
+}
+
 fn pick_at(
     view: &ChannelView<'_>,
     pulse: &Pulse,
@@ -205,33 +294,24 @@ fn pick_at(
     u: f64,
     prior: &ShapePrior,
 ) -> Option<(Picked, bool)> {
-    let height = fit.at(u).value.exp();
-    let before = Slope::zero(fit, view.inverse, u)?;
-    let slope = Slope::new(fit, view.inverse, before);
     let inexact = inexact(pulse);
     let noise = view.noise(pulse).hypot(inexact);
     let modelled = view.broad_noise(pulse).hypot(inexact);
-    let beyond = (fit.residual / noise).powi(2) > 1.0 + ADEQUATE * (2.0 / fit.freedom).sqrt();
-    let excess = if beyond { fit.residual / noise } else { 1.0 };
-    let variances = fit.variances(u);
-    let slope_variance = fit.solution.variance(&slope.row);
-    // What bells leave of a pulse is the same in all of its shots.
-    let of_inexact = (inexact / modelled).powi(2) * slope_variance;
-    // What the prior leaves open: C P C with C the covariance and P that of the prior.
-    let along = fit.solution.covariance_with(&slope.row);
-    let open = (SHAPE..MOST).map(|k| shape_product(&along, &prior.row(k)));
-    let open = open.map(|open| (modelled * open).powi(2)).sum::<f64>() + of_inexact;
+    let bell = BellTop::new(fit, (u, view.inverse), prior, (modelled, inexact))?;
+    let adequate = is_adequate(fit, noise);
+    let excess = if adequate { 1.0 } else { fit.residual / noise };
+    let height = bell.log_height.exp();
     let top = Top {
         noise: excess * modelled,
         height,
-        height_share: height * variances.value.sqrt(),
-        slope_share: height * slope_variance.sqrt(),
-        curvature: height * slope.derivative,
-        curvature_share: height * variances.curvature.sqrt(),
-        open_share: height * open.min(slope_variance).sqrt(),
+        height_share: height * bell.height_variance.sqrt(),
+        slope_share: height * bell.slope_variance.sqrt(),
+        curvature: height * bell.curvature,
+        curvature_share: height * bell.curvature_variance.sqrt(),
+        open_share: height * bell.open_variance.sqrt(),
         reach: reach(fit, u, excess * modelled),
     };
-    Some((top.pick(view, pulse, fit, before), !beyond))
+    Some((top.pick(view, pulse, fit, bell.u), adequate))
 }
 
 /// From u to the place furthest at which noise may have made the logarithm the lower.
@@ -343,7 +423,7 @@ impl BellData {
         let terms = self.terms();
         let off: Row = from_fn(|k| bell[k] - self.prior.mean[k]);
         for k in SHAPE..terms {
-            let row = self.prior.row(k).map(|x| self.noise * x);
+            let row = self.prior.root[k].map(|x| self.noise * x);
             let residual = -shape_product(&row, &off);
             let row = from_fn(|j| if j < SHAPE || j >= terms { 0.0 } else { row[j] });
             add(&row, residual);
@@ -368,7 +448,7 @@ impl BellData {
         solution.values = optimum.model;
         // What the samples, not the prior, determine.
         let known: f64 = (SHAPE..=self.degree)
-            .map(|k| solution.variance(&self.prior.row(k)) * self.noise.powi(2))
+            .map(|k| solution.variance(&self.prior.root[k]) * self.noise.powi(2))
             .sum();
         let freedom = self.points.len() as f64 - (self.degree + 1) as f64 + known;
         let residuals = self.residuals(&optimum.model);
@@ -438,4 +518,50 @@ fn derivative_rows(u: f64) -> [Row; 4] {
         }
     }
     rows
+}
+
+/// The bell of the pulses of several shots, as points (u, height) of relative noise.
+pub(super) struct CommonBell {
+    pub(super) polynomial: LocalPolynomial,
+    prior: ShapePrior,
+    /// Relative noise of a sample, and residuals of the bell that all shots share.
+    noise: (f64, f64),
+}
+
+impl CommonBell {
+    /// Of points with so much noise of so many shots, over a share of the usual width, so many samples
+    /// on either side; the search begins at another bell.
+    pub(super) fn new(
+        points: Vec<(f64, f64)>,
+        (noise, shots): (f64, f64),
+        (prior, share, half): (ShapePrior, f64, f64),
+        before: Option<Row>,
+    ) -> Option<Self> {
+        // Noise averages out over shots, and what bells leave does not.
+        let inexact = shots.sqrt() * INEXACT.0;
+        let data =
+            BellData { degree: DEGREE, points, noise: noise.hypot(inexact), prior, capped: false };
+        let mut gaussian = [0.0; MOST];
+        gaussian[2] = -LN_2 * (WHOLE_WIDTH * share).powi(2);
+        let polynomial = data.polynomial(&data.fit(before.unwrap_or(gaussian))?, 0.0, half)?;
+        Some(Self { polynomial, prior, noise: (noise, inexact) })
+    }
+
+    pub(super) fn is_adequate(&self) -> bool {
+        is_adequate(&self.polynomial, self.noise.0.hypot(INEXACT.0))
+    }
+
+    /// Its maximum, with variances by noise in place of those for unit noise.
+    pub(super) fn top(&self, inverse: [f64; 2]) -> Option<BellTop> {
+        let at = (self.polynomial.maximum()?, inverse);
+        let (noise, inexact) = (self.noise.0.hypot(self.noise.1), self.noise.1);
+        let top = BellTop::new(&self.polynomial, at, &self.prior, (noise, inexact))?;
+        let squared = noise * noise;
+        Some(BellTop {
+            height_variance: squared * top.height_variance,
+            slope_variance: squared * top.slope_variance,
+            open_variance: squared * top.open_variance,
+            ..top
+        })
+    }
 }

@@ -4,11 +4,12 @@ mod clipping;
 mod correlation;
 mod log_polynomial;
 mod polynomial;
+mod pooled;
 mod shape;
 mod superposition;
 
-pub use self::{correlation::delay_by_cross_correlation, shape::Shape};
-pub(crate) use clipping::clipped_top;
+pub use self::{correlation::delay_by_cross_correlation, pooled::PulseSamples, shape::Shape};
+pub(crate) use {clipping::clipped_top, pooled::pool};
 
 use crate::error::{MeasureError, Result};
 use crate::signal::{
@@ -206,7 +207,7 @@ pub(crate) fn pick(
     found: &Found,
     method: &Method,
     (ranges, amplifier): ([Option<DigitiserRange>; 2], Option<Bandwidth>),
-) -> Result<Picks> {
+) -> Result<(Picks, [Option<PulseSamples>; 3])> {
     MeasureError::positive("sampling interval in s", interval_s)?;
     method.check()?;
     let need = |pulse: &Option<Pulse>, kind| pulse.ok_or(MeasureError::Missing(kind));
@@ -235,7 +236,16 @@ pub(crate) fn pick(
     let mut competing = PulseKind::ALL.map(competing);
     competing[2] = competing[2].filter(|_| reflected.is_some());
     let calibration = SensorCalibration::default();
-    Ok(Picks { incident: pick(&incident)?, wall: pick(&wall)?, reflected, competing, calibration })
+    let picks =
+        Picks { incident: pick(&incident)?, wall: pick(&wall)?, reflected, competing, calibration };
+    let samples = PulseKind::ALL.map(|kind| {
+        let picked = picks.pulse(kind).filter(|_| *method == Method::Maximum)?;
+        let pulse = [found.incident, found.wall, found.reflected][kind as usize]?;
+        let time = picked.time_s / interval_s;
+        PulseSamples::new(&views[kind as usize], &pulse, time, interval_s)
+            .filter(|_| picks.competing[kind as usize].is_none())
+    });
+    Ok((picks, samples))
 }
 
 /// A pulse's maximum by a fit to the samples about it, in samples.

@@ -12,7 +12,7 @@ const AFTER: f64 = 5.0;
 /// Likely fall under a reflected pulse over the largest possible one, and its standard deviation;
 /// computed rows, dry and wet, have 0.12 ± 0.13.
 const LIKELY: f64 = 0.14;
-const DEVIATION: f64 = 0.15;
+const DEVIATION: f64 = 0.2;
 /// Standard deviation of the fall under other pulses over the largest possible one.
 const BEFORE: f64 = 0.3;
 
