@@ -259,7 +259,6 @@ fn mean_and_error(rows: &[f64]) -> (f64, f64) {
     (mean, (square / (n * (n - 1.0).max(1.0))).sqrt())
 }
 
-/// The fold of each row.
 fn folds(rows: usize, how: &Folding) -> Result<Vec<usize>, InferError> {
     let groups: Vec<usize> = match how.groups.is_empty() {
         true => (0..rows).collect(),

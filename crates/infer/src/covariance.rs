@@ -1,7 +1,7 @@
 //! Uncertainty from the curvature at the optimum.
 
 use crate::least_squares::{EXTRAPOLATED, ROUNDING};
-use crate::linear::{combine, dot, norm, svd};
+use crate::linear::{combine, dot, norm, square, svd};
 use crate::{Fit, Loss, Parameter};
 
 /// Covariance of the parameters at the optimum, (JᵀJ)⁻¹ with the priors' rows in J: right where
@@ -28,8 +28,7 @@ pub struct Covariance {
     pub unresolved: Vec<Vec<f64>>,
     /// The factor f of a robust loss; 1 for least squares.
     pub loss_factor: f64,
-    /// Resolved directions, each as long as its standard error: the matrix is the sum of their
-    /// dyads.
+    /// Resolved directions, each as long as its standard error: the matrix sums their dyads.
     pub(crate) axes: Vec<Vec<f64>>,
 }
 
@@ -74,9 +73,7 @@ impl Covariance {
         };
         let flat = directions().filter(|(value, _)| **value <= least);
         let unresolved: Vec<Vec<f64>> = flat.map(|(_, v)| own(v, 1.0)).collect();
-        let entry = |i: usize, j: usize| axes.iter().map(|a| a[i] * a[j]).sum::<f64>();
-        let matrix: Vec<Vec<f64>> =
-            (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect();
+        let matrix = square(count, |i, j| axes.iter().map(|a| a[i] * a[j]).sum());
         let open =
             |k: usize| unresolved.iter().any(|d| (d[k] * norm(&columns[k])).abs() > TAKES_PART);
         let sd = |k: usize| {

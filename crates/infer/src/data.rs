@@ -3,7 +3,7 @@
 mod table;
 
 pub(crate) use table::with_plain_ends;
-pub use table::{Defaults, Scatter, Selection, wrong_speed};
+pub use table::{Scatter, Selection, wrong_speed};
 
 use hertzchain_measure::signal::Estimate;
 
@@ -35,7 +35,6 @@ impl Observable {
         }
     }
 
-    /// What it is called.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Incident => "incident ToF",
@@ -132,13 +131,8 @@ impl DataRow {
         }
     }
 
-    /// The observables that were measured.
     pub(crate) fn observables(&self) -> impl Iterator<Item = Observable> + '_ {
         Observable::ALL.into_iter().filter(|of| self.value(*of).is_some())
-    }
-
-    fn has_both_times(&self) -> bool {
-        self.values[..2].iter().all(Option::is_some)
     }
 }
 
@@ -183,7 +177,8 @@ impl Data {
 
     /// Lines with both times of flight whose errors have no stated correlation.
     pub fn lines_without_correlation(&self) -> Vec<u64> {
-        self.lines(|row| row.has_both_times() && row.correlation.is_none())
+        let has_both = |row: &DataRow| row.values[..2].iter().all(Option::is_some);
+        self.lines(|row| has_both(row) && row.correlation.is_none())
     }
 
     /// Lines with errors from the scatter of so few shots that intervals can't be corrected for

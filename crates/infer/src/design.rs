@@ -1,7 +1,7 @@
 //! Optimal design: which measurements tighten which parameters.
 
 use crate::identify::{MOVED, Scaled, in_words, is_weak, sized};
-use crate::linear::{dot, svd};
+use crate::linear::{dot, svd, unit};
 use crate::{Fit, InferError, Parameter};
 use std::cmp::Ordering;
 
@@ -67,8 +67,7 @@ pub struct Expected {
 /// A change of ln(standard error) that counts for nothing: a tenth of a percent.
 const NO_DIFFERENCE: f64 = 1e-3;
 
-/// Knowledge assumed of every direction, in units of the parameters' sizes, so that the sum of
-/// information can always be inverted: next to none.
+/// Knowledge assumed of every direction, in sizes, so that information can be inverted.
 const KNOWN_TO: f64 = 1e4;
 
 /// Standard errors above this, in units of sizes, are called infinite.
@@ -119,9 +118,10 @@ pub fn design(
     let is_open = |k: &&usize| open.iter().any(|direction| direction[**k].abs() > MOVED);
     let (not_identifiable, named): (Vec<usize>, Vec<usize>) = targets.iter().partition(is_open);
     let words = |direction: &Vec<f64>| in_words(&sized, fit, direction);
-    let unit = |k: usize| (0..sizes.len()).map(|i| f64::from(u8::from(i == k))).collect();
     let (aims, directions): (Vec<Aim>, Vec<(Vec<f64>, f64)>) = match named.is_empty() {
-        false => named.iter().map(|k| (Aim::Parameter(*k), (unit(*k), sizes[*k]))).unzip(),
+        false => {
+            named.iter().map(|k| (Aim::Parameter(*k), (unit(sizes.len(), *k), sizes[*k]))).unzip()
+        }
         true => known.iter().map(|d| (Aim::Combination(words(d)), (d.clone(), 1.0))).unzip(),
     };
     let now = Information::new(&fit.jacobian.columns, (&sizes, &known), &directions);

@@ -118,8 +118,7 @@ pub(crate) fn is_weak(value: f64, floor: f64) -> bool {
     value * UNDETERMINED <= 1.0 || value <= floor
 }
 
-/// A Jacobian of data in units of the parameters' sizes, and how wrong its
-/// columns may be.
+/// A Jacobian of data in units of the parameters' sizes, and how wrong its columns may be.
 #[derive(Clone, Debug)]
 pub(crate) struct Scaled {
     columns: Vec<Vec<f64>>,

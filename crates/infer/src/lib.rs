@@ -26,9 +26,7 @@ pub use self::{
         Advice, Choices, CurveProblem, ExpectedErrors, FitCurve, Kind, MeasuredCurve, Model,
         Predicted, Prospect, Speeds, Surrogate, Way, ways,
     },
-    data::{
-        Data, DataRow, Defaults, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, wrong_speed,
-    },
+    data::{Data, DataRow, FEWEST_SHOTS, Freedom, Observable, Scatter, Selection, wrong_speed},
     design::{Aim, Candidate, Design, Expected, design},
     error::InferError,
     free::{Form, FreeNumber, FreeNumbers, same_number},

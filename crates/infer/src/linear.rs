@@ -23,6 +23,25 @@ pub(crate) fn combine(columns: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
     sum
 }
 
+/// A square matrix of these entries, row by row.
+pub(crate) fn square(size: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    (0..size).map(|i| (0..size).map(|j| entry(i, j)).collect()).collect()
+}
+
+/// A vector of zeros but for a 1 at one place.
+pub(crate) fn unit(size: usize, at: usize) -> Vec<f64> {
+    (0..size).map(|i| f64::from(u8::from(i == at))).collect()
+}
+
+/// L⁻¹ r of a lower triangle, row by row up to the diagonal.
+pub(crate) fn forward(lower: &[Vec<f64>], rights: &[f64]) -> Vec<f64> {
+    let mut found: Vec<f64> = Vec::with_capacity(lower.len());
+    for (at, (row, right)) in lower.iter().zip(rights).enumerate() {
+        found.push((right - dot(&row[..at], &found)) / row[at]);
+    }
+    found
+}
+
 /// What rounding leaves of a number that is 0: some tens of operations.
 const CHOLESKY_ROUNDING: f64 = 1e-14;
 
@@ -49,10 +68,9 @@ pub(crate) fn cholesky(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
 /// A column is a combination of earlier ones if so little of it is left beside them.
 const NOTHING_NEW: f64 = 1e-10;
 
-/// For each right-hand side the weights with which columns come nearest to it, by
-/// modified Gram–Schmidt on columns and right-hand sides together, which is as
-/// stable as reflections [Bjorck1967]. Columns that are combinations of earlier ones
-/// weigh nothing.
+/// For each right-hand side the weights with which columns come nearest to it, by modified
+/// Gram–Schmidt on columns and right-hand sides together, which is as stable as reflections
+/// [Bjorck1967]. Columns that are combinations of earlier ones weigh nothing.
 pub(crate) fn least_squares(columns: Vec<Vec<f64>>, rights: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let count = columns.len();
     let lengths: Vec<f64> = columns.iter().map(|column| norm(column)).collect();
@@ -68,20 +86,15 @@ pub(crate) fn least_squares(columns: Vec<Vec<f64>>, rights: Vec<Vec<f64>>) -> Ve
         own.iter_mut().for_each(|x| *x *= scale);
         let mut row = vec![if new { length } else { 0.0 }];
         let own = &*own;
-        row.par_extend(rest.par_iter_mut().map(|other| taken_out(own, other)));
+        row.par_extend(rest.par_iter_mut().map(|other| {
+            let along = product(own, other);
+            other.iter_mut().zip(own).for_each(|(from, unit)| *from -= along * unit);
+            along
+        }));
         triangle.push(row);
     }
     let right = |at: usize| weights(&triangle, count + at);
     (0..all.len() - count).into_par_iter().map(right).collect()
-}
-
-/// Takes out of a vector what lies along another of unit length; how much that was.
-fn taken_out(unit: &[f64], from: &mut [f64]) -> f64 {
-    let along = product(unit, from);
-    for (from, unit) in from.iter_mut().zip(unit) {
-        *from -= along * unit;
-    }
-    along
 }
 
 /// Scalar product, in eight sums side by side.
@@ -130,8 +143,7 @@ const SWEEPS: usize = 60;
 pub(crate) fn svd(columns: &[Vec<f64>]) -> Svd {
     let n = columns.len();
     let mut rotated = columns.to_vec();
-    let mut right: Vec<Vec<f64>> =
-        (0..n).map(|k| (0..n).map(|i| f64::from(u8::from(i == k))).collect()).collect();
+    let mut right: Vec<Vec<f64>> = (0..n).map(|k| unit(n, k)).collect();
     for _ in 0..SWEEPS {
         if !sweep(&mut rotated, &mut right) {
             break;

@@ -124,20 +124,12 @@ impl Parameter {
         Self { lower, upper, ..self }
     }
 
-    /// The same parameter with a prior.
-    pub(crate) fn with_prior(self, prior: Prior) -> Self {
-        Self { prior, ..self }
-    }
-
     /// Whether a value is within the bounds.
     pub(crate) fn admits(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
     }
 
     /// Checks bounds, start, scale and prior against each other.
-    ///
-    /// # Errors
-    /// The first thing that does not fit.
     pub(crate) fn check(&self) -> Result<(), InferError> {
         let (name, prior) = (&self.name, &self.prior);
         let [start, lower, upper] = [self.start, self.lower, self.upper].map(short);
@@ -188,9 +180,6 @@ pub trait Problem: Sync {
 
     /// Derivatives of the residuals by each measured number: `None` where each residual is a
     /// measured number of its own.
-    ///
-    /// # Errors
-    /// A model that fails at the point.
     fn responses(&self, _point: &[f64]) -> Result<Option<Vec<Response>>, ModelError> {
         Ok(None)
     }

@@ -6,8 +6,7 @@ use crate::{Covariance, Fit, Fitting, InferError, Problem};
 /// How to profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profiling {
-    /// Rises of χ² whose intervals are wanted, ascending: 1 and 3.841459 for
-    /// 68.3 and 95 %.
+    /// Rises of χ² whose intervals are wanted, ascending: 1 and 3.841459 for 68.3 and 95 %.
     pub levels: Vec<f64>,
     /// Most values of a parameter on either side of the optimum.
     pub most_values: usize,
@@ -76,8 +75,7 @@ impl End {
 /// Fall of χ² below the optimum's that is more than noise of the model.
 const BETTER: f64 = 0.01;
 
-/// Profiles of those of some parameters that there are, all walks and descents
-/// side by side.
+/// Profiles of those of some parameters that there are, all walks and descents side by side.
 ///
 /// From the optimum outward, each value is held and the others re-optimised from
 /// where the last two values' optima point; the ends are found on √(χ² rise),
@@ -172,7 +170,6 @@ struct Walk {
     stop: Option<ProfileStop>,
 }
 
-/// A value that was met.
 #[derive(Clone, Debug)]
 struct Met {
     point: Vec<f64>,
@@ -264,7 +261,9 @@ impl Walk {
         self.stop = match () {
             () if height >= goal => Some(ProfileStop::Risen),
             () if distance >= room => Some(ProfileStop::Bound),
-            () if self.nears_failure(distance) => Some(ProfileStop::Fails),
+            () if self.failing.is_some_and(|fails| fails - distance <= NEAR * fails) => {
+                Some(ProfileStop::Fails)
+            }
             () if distance >= self.limit_distance || self.met.len() > self.most => {
                 Some(ProfileStop::Far)
             }
@@ -275,11 +274,6 @@ impl Walk {
         }
         let limit = self.failing.map_or(f64::INFINITY, |fails| 0.5 * (distance + fails));
         Some((distance + self.step()).min(room).min(limit))
-    }
-
-    fn nears_failure(&self, distance: f64) -> bool {
-        let near = |fails: f64| fails - distance <= NEAR * fails;
-        self.failing.is_some_and(near)
     }
 
     /// From the slope of √rise over the last step, within what is sensible.

@@ -4,7 +4,6 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// What random numbers are for.
 #[derive(Clone, Copy)]
 pub(crate) enum Purpose {
     /// Start of a descent, by number.
@@ -33,7 +32,6 @@ impl RandomStream {
         Self(generator)
     }
 
-    /// Standard normal.
     pub(crate) fn normal(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }

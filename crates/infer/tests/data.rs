@@ -1,6 +1,6 @@
 //! Tables of measured curves: what is read and what is refused, with its place.
 
-use hertzchain_infer::{Data, Defaults, Observable, Selection};
+use hertzchain_infer::{Data, Observable, Selection};
 
 const HEAD: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n";
 
@@ -81,10 +81,7 @@ fn a_missing_column_is_named_with_what_stands_in_its_place() {
     assert!(error.contains("`tof_us` is not read"), "{error}");
     let error = parse("speed_m_s,tof_incident_s\n0.5,7e-4\n").unwrap_err();
     assert!(error.contains("tof_incident_s_error") && error.contains("--tof-error"), "{error}");
-    let selection = Selection {
-        defaults: Defaults { time_s: Some(1e-7), ..Defaults::default() },
-        ..Selection::default()
-    };
+    let selection = Selection { time_error_s: Some(1e-7), ..Selection::default() };
     let text = "speed_m_s,tof_incident_s\n0.5,7e-4\n";
     let data = Data::parse("a.csv", text, &selection);
     assert_eq!(data.unwrap().rows[0].values[0].unwrap().sigma, 1e-7);

@@ -3,9 +3,7 @@
 use crate::common::model;
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::preset;
-use hertzchain_infer::{
-    Covariance, Fitting, Goodness, Problem, PulseProblem, Pulses, Respond, fit,
-};
+use hertzchain_infer::{Covariance, Fitting, Goodness, Problem, PulseProblem, Pulses, fit};
 use hertzchain_measure::signal::Estimate;
 use hertzchain_sim::{Plan, shoot};
 use rand::SeedableRng;
@@ -56,7 +54,8 @@ fn pulses(speed_m_s: f64, seed: u64, separate: bool) -> Pulses {
 
 fn pulls(records: Vec<Pulses>, free: &[&str], exact: &[f64]) {
     let dry = preset("dry").unwrap();
-    let problem = PulseProblem::new(model(&dry, free), records, Respond::default()).unwrap();
+    let problem =
+        PulseProblem::new(model(&dry, free), records, |_, signal, _| signal.to_vec()).unwrap();
     let mut parameters = problem.parameters().to_vec();
     parameters[0].start = 2e4;
     let problem = problem.with_parameters(parameters).unwrap();
@@ -104,7 +103,9 @@ fn records_that_cannot_be_fitted_say_why() {
 #[test]
 fn a_record_whose_shot_the_model_does_not_show_is_left_out_by_name() {
     let dry = preset("dry").unwrap();
-    let of = |records| PulseProblem::new(model(&dry, &["eta:each"]), records, Respond::default());
+    let of = |records| {
+        PulseProblem::new(model(&dry, &["eta:each"]), records, |_, signal, _| signal.to_vec())
+    };
     let mut broken = pulses(0.7, 8, false);
     (broken.speed_m_s.value, broken.programmed_m_s) = (-0.7, 0.7);
     let problem = of(vec![broken.clone(), pulses(0.4, 7, false)]).unwrap();

@@ -1,9 +1,7 @@
 //! Standard errors that come from the scatter of a few shots.
 
 use crate::toys::{Curve, normals, spaced, straight};
-use hertzchain_infer::{
-    Covariance, Data, Defaults, Fitting, InferError, Parameter, Scatter, Selection, fit,
-};
+use hertzchain_infer::{Covariance, Data, Fitting, InferError, Parameter, Scatter, Selection, fit};
 use hertzchain_measure::signal::coverage;
 
 const SHOTS: usize = 20;
@@ -51,8 +49,7 @@ fn intervals_hold_the_truth_where_errors_of_twenty_shots_are_widened_and_not_els
 }
 
 fn read(text: &str, scatter: Scatter) -> Result<Data, InferError> {
-    let defaults = Defaults { scatter, ..Defaults::default() };
-    let selection = Selection { defaults, ..Selection::default() };
+    let selection = Selection { scatter, ..Selection::default() };
     Data::parse("a.csv", text, &selection)
 }
 

@@ -17,7 +17,7 @@ mod evaluated;
 
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::gauge::{Chains, Gauge, known_oils};
-use hertzchain_infer::{Data, Defaults, Observable, Selection};
+use hertzchain_infer::{Data, Observable, Selection};
 use hertzchain_measure::{Grouping, Options, measure, speeds_csv};
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -113,7 +113,7 @@ fn run_gauge(text: &str, table: &str, said: &mut [Said; 2]) -> Result<(), Box<dy
             let selection = Selection {
                 case: Some(case.to_owned()),
                 observables: used.to_vec(),
-                defaults: Defaults::default(),
+                ..Selection::default()
             };
             Data::parse("speeds.csv", table, &selection)
         };

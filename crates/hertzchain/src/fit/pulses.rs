@@ -7,7 +7,7 @@ use crate::inference::{self, user, wanted};
 use crate::measure::{files, list};
 use crate::options::{Filter, FitOptions as Arguments};
 use hertzchain_experiment::{Amplifier as Numbers, Experiment};
-use hertzchain_infer::{Covariance, Goodness, Model, Problem, PulseProblem, Pulses, Respond};
+use hertzchain_infer::{Covariance, Goodness, Model, Problem, PulseProblem, Pulses};
 use hertzchain_measure::ShotList;
 use hertzchain_measure::records::{ReadOptions, Record, read};
 use hertzchain_measure::signal::Estimate;
@@ -29,7 +29,6 @@ pub struct Recorded {
     model: Model,
     records: Vec<Pulses>,
     refused: Vec<String>,
-    respond: Respond,
 }
 
 /// Reads recordings, and the model they are to be held against.
@@ -51,12 +50,7 @@ pub fn recorded_of(experiment: &Experiment, arguments: &Arguments) -> Result<Rec
     let experiment = &with_filter(experiment, arguments)?;
     let model = inference::model(experiment, &arguments.modelled, &arguments.freed)?;
     let (records, refused) = records(experiment, arguments)?;
-    Ok(Recorded {
-        model,
-        records: spread(records, arguments.recorded.most_shots.0),
-        refused,
-        respond: respond(),
-    })
+    Ok(Recorded { model, records: spread(records, arguments.recorded.most_shots.0), refused })
 }
 
 /// The experiment with the low-pass that options say.
@@ -149,13 +143,12 @@ fn spread(records: Vec<Pulses>, most: usize) -> Vec<Pulses> {
     all.filter(|(at, _)| count <= most || kept(at)).map(|(_, r)| r).collect()
 }
 
-fn respond() -> Respond {
-    Respond::new(|numbers, signal, interval_s| {
-        let plain =
-            Numbers { sensitivity_c_n: 1.0, wall_sensitivity_c_n: 1.0, gain_v_c: 1.0, ..*numbers };
-        let force_n = |at: usize| [signal.get(at).copied().unwrap_or_default(), 0.0];
-        Amplifier::new(&plain, interval_s).follow(signal.len(), force_n)
-    })
+/// What an amplifier's filters make of a signal.
+fn filtered(numbers: &Numbers, signal: &[f64], interval_s: f64) -> Vec<f64> {
+    let plain =
+        Numbers { sensitivity_c_n: 1.0, wall_sensitivity_c_n: 1.0, gain_v_c: 1.0, ..*numbers };
+    let force_n = |at: usize| [signal.get(at).copied().unwrap_or_default(), 0.0];
+    Amplifier::new(&plain, interval_s).follow(signal.len(), force_n)
 }
 
 /// Fits whole pulses and determines the uncertainty as the method asks.
@@ -164,7 +157,7 @@ fn respond() -> Respond {
 /// What is in the way of a fit; where no record is left, why.
 pub fn fit_result(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, Failure> {
     let mut refused = recorded.refused;
-    let problem = PulseProblem::new(recorded.model, recorded.records, recorded.respond);
+    let problem = PulseProblem::new(recorded.model, recorded.records, filtered);
     let problem = problem.map_err(|error| none_left(&error, &refused))?;
     refused.extend(problem.left_out.iter().cloned());
     let problem = inference::pulses(problem, &arguments.freed)?;

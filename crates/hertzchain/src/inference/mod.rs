@@ -20,8 +20,8 @@ use crate::options::{
 };
 use hertzchain_experiment::{Experiment, PathError, Units};
 use hertzchain_infer::{
-    CurveProblem, Data, Defaults, FEWEST_SHOTS, FreeNumber, FreeNumbers, InferError, Model,
-    Observable, Problem, PulseProblem, Scatter, Selection,
+    CurveProblem, Data, FEWEST_SHOTS, FreeNumber, FreeNumbers, InferError, Model, Observable,
+    Problem, PulseProblem, Scatter, Selection,
 };
 use hertzchain_measure::records::{peek, text};
 use hertzchain_sim::{StudyError, stopped};
@@ -110,15 +110,13 @@ pub fn parsed(
     let selection = Selection {
         case,
         observables: measured.observables.iter().map(|what| (*what).into()).collect(),
-        defaults: Defaults {
-            speed_m_s: measured.speed_error.map(|error| error.0),
-            time_s: measured.tof_error.map(|error| error.0),
-            ratio: measured.ratio_error.map(|error| error.0),
-            scatter: match measured.error_shots {
-                None => Scatter::AsTold,
-                Some(ErrorShots(None)) => Scatter::Known,
-                Some(ErrorShots(Some(shots))) => Scatter::Of(shots),
-            },
+        speed_error_m_s: measured.speed_error.map(|error| error.0),
+        time_error_s: measured.tof_error.map(|error| error.0),
+        ratio_error: measured.ratio_error.map(|error| error.0),
+        scatter: match measured.error_shots {
+            None => Scatter::AsTold,
+            Some(ErrorShots(None)) => Scatter::Known,
+            Some(ErrorShots(Some(shots))) => Scatter::Of(shots),
         },
     };
     Data::parse(name, text, &selection).map_err(user)

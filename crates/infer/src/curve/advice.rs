@@ -13,8 +13,7 @@ pub struct Advice {
     pub combinations: usize,
     /// What the data so far determine.
     pub now: Prospect,
-    /// What would be determined with each of several measurements more, the most
-    /// promising first.
+    /// What would be determined with each of several measurements more, the most promising first.
     pub prospects: Vec<Prospect>,
     /// What to free or to fix instead.
     pub instead: String,

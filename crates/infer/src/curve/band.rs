@@ -1,6 +1,6 @@
 //! A fitted curve and how sure it is.
 
-use super::model::Predicted;
+use super::model::{Predicted, Speeds};
 use super::problem::MeasuredCurve;
 use crate::problem::ModelError;
 use crate::{Covariance, Fit};
@@ -31,11 +31,11 @@ impl MeasuredCurve {
         let sides = (0..fit.point.len()).flat_map(|at| [(at, 1.0), (at, -1.0)]);
         let points: Vec<Vec<f64>> =
             std::iter::once(fit.point.clone()).chain(sides.map(moved)).collect();
-        let predicted = self.predicted(std::slice::from_ref(&fit.point)).into_iter();
-        let predicted =
-            predicted.last().unwrap_or_else(|| Err(ModelError("no curve was computed".into())))?;
-        let finer = self.for_slopes();
-        let found = finer.predicted(&points).into_iter();
+        let speeds = Speeds::of_rows(&self.data.speeds_m_s());
+        let predicted = self.model.curve(&self.own(&fit.point), &speeds)?;
+        let mut finer = self.clone();
+        finer.model = finer.model.for_slopes();
+        let found = finer.predicted_at(&points, &speeds).into_iter();
         let found: Vec<_> = found.map(Result::ok).collect();
         let slope = |parameter: usize, row: usize, of: usize| {
             let at = |point: usize| found.get(point)?.as_ref()?.get(row)?[of];

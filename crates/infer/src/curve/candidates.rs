@@ -88,7 +88,6 @@ impl ExpectedErrors {
         }
     }
 
-    /// Of an observable.
     fn of(&self, observable: Observable) -> f64 {
         match observable.is_time() {
             true => self.time_s,
@@ -180,9 +179,6 @@ pub fn ways(experiment: &Experiment, choices: &Choices) -> Result<Vec<Way>, Infe
 impl CurveProblem {
     /// Each way at each speed as something to measure, with derivatives at a fit's
     /// optimum by central differences, all speeds of a way in one ensemble.
-    ///
-    /// # Errors
-    /// See [`InferError`].
     pub fn candidates(
         &self,
         fit: &Fit,
@@ -250,11 +246,7 @@ fn expected(
     errors: &ExpectedErrors,
 ) -> Result<Data, ModelError> {
     let speeds = Speeds::of_rows(speeds_m_s);
-    let curve = model.curves(std::slice::from_ref(&fit.point), &speeds);
-    let curve = curve
-        .into_iter()
-        .next()
-        .unwrap_or_else(|| Err(ModelError("no curve was computed".into())))?;
+    let curve = model.curve(&fit.point, &speeds)?;
     let row = |(at, speed): (usize, &f64)| {
         let value = |of: Observable| {
             let sigma = errors.of(of);

@@ -138,11 +138,7 @@ impl CurveProblem {
         Self { curves: curves.collect(), ..self }
     }
 
-    /// The same problem with other measured values at the same speeds, such as
-    /// those of a simulated repetition: one set of data a curve.
-    ///
-    /// # Errors
-    /// No parameter, one that cannot be free, or fewer numbers than unknowns.
+    /// The same problem with other measured values at the same speeds, one set of data a curve.
     pub(crate) fn with_data(
         &self,
         data: impl IntoIterator<Item = Data>,
@@ -201,8 +197,7 @@ impl CurveProblem {
         })
     }
 
-    /// By how many of its row's errors one prediction differs from another at each of these speeds;
-    /// infinite where only one has a number.
+    /// By how many of its row's errors predictions differ at each speed; infinite without one.
     pub(super) fn differences(&self, one: &[Predicted], other: &[Predicted]) -> Vec<f64> {
         let pairs = self.parts(one).zip(self.parts(other));
         pairs.flat_map(|((curve, one), (_, other))| curve.differences(one, other)).collect()
@@ -217,7 +212,6 @@ impl CurveProblem {
         all.flat_map(own).collect()
     }
 
-    /// Residuals of predictions.
     pub(crate) fn residuals_of(&self, predicted: &[Predicted]) -> Result<Residuals, ModelError> {
         let mut residuals = Residuals::default();
         for (curve, own) in self.parts(predicted) {
@@ -242,8 +236,7 @@ impl Problem for CurveProblem {
     }
 
     fn responses(&self, point: &[f64]) -> Result<Option<Vec<Response>>, ModelError> {
-        let mut curves = self.all_curves(&[point.to_vec()]);
-        let predicted = curves.pop().unwrap_or_else(|| Err(ModelError::default()))?;
+        let predicted = self.all_curves(&[point.to_vec()]).remove(0)?;
         let mut all = Vec::new();
         for (curve, own) in self.parts(&predicted) {
             curve.responses(own, &mut all)?;

@@ -53,7 +53,6 @@ pub(crate) struct Shooting {
     pub(crate) wall_gain: f64,
     /// That of the bead's sensor and its amplifier in V/N.
     pub(crate) sensor_gain_v_n: f64,
-    /// The amplifier behind both.
     pub(crate) amplifier: Amplifier,
 }
 
@@ -90,11 +89,9 @@ impl Model {
         self.with_accuracy(accuracy)
     }
 
-    /// Accuracy beyond which rounding matters.
     const FINEST: f64 = 1e-9;
 
-    /// What names any problem of this model begins with: the experiment as it is understood,
-    /// its free numbers, what is known of their parameters, accuracy and instruction set.
+    /// What names of problems of this model follow from.
     pub(crate) fn inputs(&self, parameters: &[Parameter]) -> String {
         let experiment = self.experiment.canonical_text();
         format!("{:?}", (experiment, &self.numbers, parameters, self.set.name(), self.accuracy))
@@ -136,6 +133,15 @@ impl Model {
         curves
     }
 
+    /// Predictions at all speeds for one point.
+    pub(super) fn curve(
+        &self,
+        point: &[f64],
+        speeds: &Speeds,
+    ) -> Result<Vec<Predicted>, ModelError> {
+        self.curves(&[point.to_vec()], speeds).remove(0)
+    }
+
     /// The largest relative error of one curve's times of flight, each shot of
     /// which is computed again with longer steps, or more tightly.
     ///
@@ -153,7 +159,6 @@ impl Model {
         Ok(worst)
     }
 
-    /// A point's shots.
     pub(crate) fn plans(
         &self,
         point: &[f64],
@@ -189,7 +194,6 @@ impl Model {
         speeds.at.iter().map(&mut plan).collect()
     }
 
-    /// The experiment with settings.
     fn set(&self, settings: &Settings) -> Result<Experiment, PathError> {
         let numbers = settings.numbers.iter();
         let numbers: Vec<(&str, f64)> = numbers.map(|(path, v)| (path.as_str(), *v)).collect();
@@ -217,7 +221,6 @@ fn reported(mistakes: &Mistakes) -> String {
 /// What multiplies the wall's signal, and what is added to both times.
 type Reading = (f64, [f64; 2]);
 
-/// What a shot shows.
 fn predicted(shot: &Shot, (gain, delays_s): Reading) -> Result<Predicted, String> {
     let passage = shot.passage.as_ref().map_err(ToString::to_string)?;
     let flight = shot.flight.ok_or("no pulse was seen to pass")?;

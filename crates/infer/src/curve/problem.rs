@@ -6,19 +6,18 @@ use super::stencil::Stencil;
 use super::whiten::{Errors, whiten};
 use crate::Parameter;
 use crate::data::{Data, DataRow, Observable};
+use crate::linear::unit;
 use crate::problem::{ModelError, Residuals, Response};
 use hertzchain_sim::Fingerprint;
 
-/// Relative distance of the speeds around each row's, where there are too
-/// few rows to determine a slope.
+/// Relative distance of speeds around each row's, where too few rows determine a slope.
 const ASIDE: f64 = 0.02;
 
 /// Times of flight and ratios of peaks with a model whose parameters are those of a
 /// [`CurveProblem`](super::CurveProblem).
 ///
-/// Residuals are measured − predicted, made independent within each row:
-/// errors of the speed move all that was measured at it together, by the
-/// slope of the model's own curve.
+/// Residuals are measured − predicted, made independent within each row: errors of the speed move
+/// all that was measured at it together, by the slope of the model's own curve.
 #[derive(Clone, Debug)]
 pub struct MeasuredCurve {
     /// The model.
@@ -37,7 +36,15 @@ impl MeasuredCurve {
     pub fn new(model: Model, data: Data) -> Self {
         let count = model.numbers.parameters(&data.speeds_m_s()).len();
         let (speeds, stencils) = curve_speeds(&data.speeds_m_s());
-        let labels = data.rows.iter().flat_map(row_labels).collect();
+        let labels = data.rows.iter().flat_map(|row| {
+            // Four digits distinguish rows for a reader.
+            let speed = row.speed_m_s.value;
+            let speed: f64 = format!("{speed:.3e}").parse().unwrap_or(speed);
+            let label =
+                move |of: Observable| format!("line {}, {speed} m/s, {}", row.line, of.name());
+            row.observables().map(label)
+        });
+        let labels = labels.collect();
         Self {
             model,
             data,
@@ -54,7 +61,7 @@ impl MeasuredCurve {
     }
 
     /// The model's parameters at a point of the problem.
-    fn own(&self, point: &[f64]) -> Vec<f64> {
+    pub(super) fn own(&self, point: &[f64]) -> Vec<f64> {
         let value = |supply: &Supply| match supply {
             Supply::Fixed(value) => *value,
             Supply::Free(at) => point.get(*at).copied().unwrap_or(f64::NAN),
@@ -81,19 +88,11 @@ impl MeasuredCurve {
         self.model.accuracy_reached(&self.own(point), &speeds)
     }
 
-    pub(super) fn for_slopes(&self) -> Self {
-        Self { model: self.model.clone().for_slopes(), ..self.clone() }
-    }
-
     pub(crate) fn with_data(&self, data: Data) -> Self {
         Self::new(self.model.clone(), data).supplied(self.supplies.clone())
     }
 
-    /// Predictions at the data's speeds, one set of rows a point of the problem.
-    pub(crate) fn predicted(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Predicted>, ModelError>> {
-        self.predicted_at(points, &Speeds::of_rows(&self.data.speeds_m_s()))
-    }
-
+    /// Predictions at some speeds, one set of rows a point of the problem.
     pub(super) fn predicted_at(
         &self,
         points: &[Vec<f64>],
@@ -108,8 +107,7 @@ impl MeasuredCurve {
         &self.speeds
     }
 
-    /// By how many of its row's errors one curve differs from another at each of these speeds;
-    /// infinite where only one has a prediction.
+    /// By how many of its row's errors curves differ at each speed; infinite where one has none.
     pub(super) fn differences(&self, one: &[Predicted], other: &[Predicted]) -> Vec<f64> {
         let at = |(speed, (row, _)): (usize, &(usize, f64))| {
             let row = &self.data.rows[*row];
@@ -136,30 +134,19 @@ impl MeasuredCurve {
         &self.labels
     }
 
-    /// Residuals of a predicted curve.
     pub(super) fn residuals_of(
         &self,
         curve: &[Predicted],
         residuals: &mut Residuals,
     ) -> Result<(), ModelError> {
         for (row, measured) in self.data.rows.iter().enumerate() {
-            for (standardised, ln_sigma) in self.row(row, measured, curve)? {
+            let (misses, errors) = self.misses(row, measured, curve)?;
+            for (standardised, ln_sigma) in whiten(&misses, &errors) {
                 residuals.standardised.push(standardised);
                 residuals.ln_sigmas.push(ln_sigma);
             }
         }
         Ok(())
-    }
-
-    /// Residuals of a row, independent and standardised, with ln σ.
-    fn row(
-        &self,
-        row: usize,
-        measured: &DataRow,
-        curve: &[Predicted],
-    ) -> Result<Vec<(f64, f64)>, ModelError> {
-        let (misses, errors) = self.misses(row, measured, curve)?;
-        Ok(whiten(&misses, &errors))
     }
 
     /// What each measured number, larger by one unit, changes the residuals of its row by.
@@ -171,12 +158,10 @@ impl MeasuredCurve {
         for (row, measured) in self.data.rows.iter().enumerate() {
             let (misses, errors) = self.misses(row, measured, curve)?;
             let (first, count) = (all.len(), misses.len());
-            let unit = |at: usize| {
-                let one: Vec<f64> = (0..count).map(|k| f64::from(u8::from(k == at))).collect();
-                let changes = whiten(&one, &errors).into_iter().enumerate();
-                changes.map(|(k, (change, _))| (first + k, change)).collect()
-            };
-            all.extend((0..count).map(unit));
+            all.extend((0..count).map(|at| {
+                let changes = whiten(&unit(count, at), &errors).into_iter().enumerate();
+                changes.map(|(k, (change, _))| (first + k, change)).collect::<Response>()
+            }));
         }
         Ok(())
     }
@@ -193,9 +178,7 @@ impl MeasuredCurve {
         let mut misses = Vec::new();
         let mut errors = Errors::new(measured.freedom.speed, measured.correlation());
         for of in measured.observables() {
-            let Some(value) = measured.value(of) else {
-                continue;
-            };
+            let Some(value) = measured.value(of) else { continue };
             let none = || {
                 let (name, speed) = (of.name(), measured.speed_m_s.value);
                 ModelError(format!("at {speed} m/s: the model has no {name}"))
@@ -215,8 +198,7 @@ impl MeasuredCurve {
     }
 }
 
-/// Speeds to compute, and for each row what its slope is made of: the rows' own
-/// speeds, or each with two around it where they are too few.
+/// Speeds to compute: the rows', or three a row where these are too few; and stencils of slopes.
 fn curve_speeds(speeds_m_s: &[f64]) -> (Speeds, Vec<Stencil>) {
     let rows = 0..speeds_m_s.len();
     let own: Option<Vec<Stencil>> = rows.map(|row| Stencil::new(speeds_m_s, row)).collect();
@@ -230,11 +212,4 @@ fn curve_speeds(speeds_m_s: &[f64]) -> (Speeds, Vec<Stencil>) {
     let rows = speeds_m_s.len();
     let stencils = (0..rows).map(|row| Stencil::around(ASIDE, 3 * row));
     (Speeds { at, rows }, stencils.collect())
-}
-
-fn row_labels(row: &DataRow) -> Vec<String> {
-    // Four digits distinguish rows for a reader.
-    let speed: f64 = format!("{:.3e}", row.speed_m_s.value).parse().unwrap_or(row.speed_m_s.value);
-    let label = |of: Observable| format!("line {}, {speed} m/s, {}", row.line, of.name());
-    row.observables().map(label).collect()
 }

@@ -7,8 +7,7 @@
 /// Speeds that differ by less determine the solver's noise rather than a slope.
 const LEAST_STEP: f64 = 0.01;
 
-/// Speeds whose logarithms make a parabola, and what its slope at one of them
-/// is made of.
+/// Speeds whose logarithms make a parabola, and weights of its slope at the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stencil {
     at: [usize; 3],
@@ -31,8 +30,7 @@ impl Stencil {
         Some(Self::through([row, one, two], [one, two].map(|other| x[other] - x[row])))
     }
 
-    /// For a speed that stands between one below and one above, each a relative
-    /// `aside` from it; `first` is the place of the lower one.
+    /// For a speed between two others, a relative `aside` off; `first` is the lower one's place.
     pub(super) fn around(aside: f64, first: usize) -> Self {
         let steps = [(1.0 - aside).ln(), (1.0 + aside).ln()];
         Self::through([first + 1, first, first + 2], steps)

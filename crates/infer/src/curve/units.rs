@@ -29,7 +29,7 @@ impl MeasuredCurve {
     /// Median of ln(measured/predicted) of incident times at speeds so many times slower.
     fn middle_miss(&self, start: &[f64], factor: f64) -> Option<f64> {
         let speeds: Vec<f64> = self.data.speeds_m_s().iter().map(|v| v / factor).collect();
-        let curve = self.predicted_at(&[start.to_vec()], &Speeds::of_rows(&speeds)).pop()?.ok()?;
+        let curve = self.model.curve(&self.own(start), &Speeds::of_rows(&speeds)).ok()?;
         let miss = |(row, predicted): (&crate::DataRow, &super::Predicted)| {
             let measured = row.value(Observable::Incident)?.value;
             Some((measured / predicted[Observable::Incident.index()]?).ln())

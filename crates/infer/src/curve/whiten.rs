@@ -1,6 +1,7 @@
 //! Residuals of one row, made independent.
 
 use crate::data::widening;
+use crate::linear::{cholesky, forward, square};
 
 /// Standard errors of what was measured at one speed.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +18,7 @@ pub(super) struct Errors {
 }
 
 impl Errors {
-    /// None yet, of a speed whose error has these degrees of freedom; errors of the first two
-    /// numbers have this correlation.
+    /// None yet, with the freedom of the speed's error and the correlation of the first two.
     pub(super) fn new(of_speed: f64, correlation: f64) -> Self {
         Self { sigmas: Vec::new(), moved: Vec::new(), freedom: Vec::new(), of_speed, correlation }
     }
@@ -70,33 +70,20 @@ impl Errors {
     }
 }
 
-/// Lower triangle of a row's covariance.
-type Triangle = [[f64; 4]; 4];
-
-/// Standardises what one speed's measurements miss: with B the covariance of their own errors
-/// and `sᵢ`, what an error of the speed of one σ moves each by, their
-/// covariance is C = B + s sᵀ. Given C = L Lᵀ the result is L⁻¹ r with
-/// ln Lᵢᵢ; the sum of its squares is rᵀ C⁻¹ r.
+/// Standardises what one speed's measurements miss: with B the covariance of their own errors and
+/// `sᵢ`, what an error of the speed of one σ moves each by, their covariance is C = B + s sᵀ. Given
+/// C = L Lᵀ the result is L⁻¹ r with ln Lᵢᵢ; the sum of its squares is rᵀ C⁻¹ r.
 ///
 /// The first is standardised by itself, each further one by what it determines beside
 /// those before it.
 pub(super) fn whiten(residuals: &[f64], errors: &Errors) -> Vec<(f64, f64)> {
     let moved = &errors.moved;
-    let mut triangle: Triangle = [[0.0; 4]; 4];
-    let mut white: Vec<(f64, f64)> = Vec::with_capacity(residuals.len());
-    for i in 0..residuals.len().min(4) {
-        for j in 0..=i {
-            let sum: f64 = (0..j).map(|k| triangle[i][k] * triangle[j][k]).sum();
-            let rest = errors.own(i, j) + moved[i] * moved[j] - sum;
-            triangle[i][j] = match i == j {
-                true => rest.sqrt(),
-                false => rest / triangle[j][j],
-            };
-        }
-        let known: f64 = (0..i).map(|k| triangle[i][k] * white[k].0).sum();
-        white.push(((residuals[i] - known) / triangle[i][i], triangle[i][i].ln()));
-    }
-    white
+    let covariance = |i: usize, j: usize| errors.own(i, j) + moved[i] * moved[j];
+    let Some(lower) = cholesky(&square(residuals.len(), covariance)) else {
+        return vec![(f64::NAN, f64::NAN); residuals.len()];
+    };
+    let white = forward(&lower, residuals).into_iter().zip(&lower).enumerate();
+    white.map(|(at, (residual, row))| (residual, row[at].ln())).collect()
 }
 
 #[cfg(test)]

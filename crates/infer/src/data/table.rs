@@ -5,19 +5,6 @@ use crate::InferError;
 use csv::{ReaderBuilder, Trim};
 use hertzchain_measure::signal::Estimate;
 
-/// Standard errors for tables that have no columns of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Defaults {
-    /// Of speeds in m/s; 0 when `None`.
-    pub speed_m_s: Option<f64>,
-    /// Of times of flight in s.
-    pub time_s: Option<f64>,
-    /// Of ratios of peaks.
-    pub ratio: Option<f64>,
-    /// How well errors are known, the table's too.
-    pub scatter: Scatter,
-}
-
 /// Number of shots from whose scatter standard errors come. Fits widen
 /// such errors by what their own uncertainty costs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,15 +27,26 @@ pub struct Selection {
     pub case: Option<String>,
     /// Which measured numbers.
     pub observables: Vec<Observable>,
-    /// Standard errors where the table has none.
-    pub defaults: Defaults,
+    /// Standard error of speeds in m/s where the table has none; 0 when `None`.
+    pub speed_error_m_s: Option<f64>,
+    /// The same of times of flight in s.
+    pub time_error_s: Option<f64>,
+    /// The same of ratios of peaks.
+    pub ratio_error: Option<f64>,
+    /// How well errors are known, the table's too.
+    pub scatter: Scatter,
 }
 
 impl Default for Selection {
-    /// Both times of flight.
     fn default() -> Self {
-        let observables = vec![Observable::Incident, Observable::Reflected];
-        Self { case: None, observables, defaults: Defaults::default() }
+        Self {
+            case: None,
+            observables: vec![Observable::Incident, Observable::Reflected],
+            speed_error_m_s: None,
+            time_error_s: None,
+            ratio_error: None,
+            scatter: Scatter::default(),
+        }
     }
 }
 
@@ -68,19 +66,10 @@ impl Data {
     pub fn parse(file: &str, text: &str, selection: &Selection) -> Result<Self, InferError> {
         let (titles, records) =
             records(text).map_err(|what| InferError::Input(format!("{file}: {what}")))?;
-        Self::from_records(file, &titles, records, selection)
-    }
-
-    fn from_records(
-        file: &str,
-        titles: &[String],
-        records: Vec<Record>,
-        selection: &Selection,
-    ) -> Result<Self, InferError> {
-        let columns = Columns::of(titles, &selection.observables, file)?;
+        let columns = Columns::of(&titles, &selection.observables, file)?;
         let has_cases = titles.iter().any(|title| title == "case");
         let (case, records) = of_case(file, records, has_cases, selection.case.as_deref())?;
-        let reader = Reader { file, defaults: &selection.defaults, columns };
+        let reader = Reader { file, titles: &titles, selection, columns };
         let rows = records.iter().filter_map(|record| reader.row(record).transpose());
         let mut rows: Vec<DataRow> = rows.collect::<Result<_, _>>()?;
         rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
@@ -93,8 +82,7 @@ impl Data {
     }
 }
 
-/// A text whose lines all end alike: the reader counts a carriage return and a line feed as one
-/// line too few.
+/// A text with plain ends: the reader counts a carriage return and line feed as one line too few.
 pub(crate) fn with_plain_ends(text: &str) -> String {
     text.replace("\r\n", "\n").replace('\r', "\n")
 }
@@ -152,8 +140,7 @@ fn of_case(
         InferError::input(format!("{file}: {what}; its cases are {}", cases.join(", ")))
     };
     let chosen = match (asked, &cases[..]) {
-        (None, []) => String::new(),
-        (None, [only]) => only.clone(),
+        (None, [] | [_]) => cases.first().cloned().unwrap_or_default(),
         (None, _) => return wrong("one case must be chosen by --case"),
         // Of the model, then: the table has none.
         (Some(name), _) if !has_cases => return Ok((name.to_owned(), records)),
@@ -164,30 +151,23 @@ fn of_case(
     Ok((chosen, records))
 }
 
-/// A column: its place and its title.
-#[derive(Clone, Debug, PartialEq)]
-struct TableColumn {
-    at: usize,
-    title: String,
-}
-
-/// Columns of a measured quantity.
-#[derive(Clone, Debug, PartialEq)]
+/// Columns of a measured quantity, by their places.
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Measured {
-    value: TableColumn,
-    sigma: Option<TableColumn>,
+    value: usize,
+    sigma: Option<usize>,
     /// Number of shots that it is the mean of.
-    count: Option<TableColumn>,
+    count: Option<usize>,
     /// The part of its error that all shots share, and that no scatter shows.
-    shared: Option<TableColumn>,
+    shared: Option<usize>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 struct Columns {
-    shots: Option<TableColumn>,
+    shots: Option<usize>,
     speed: Measured,
     observables: [Option<Measured>; 4],
-    correlation: Option<TableColumn>,
+    correlation: Option<usize>,
 }
 
 /// Times that `measure` takes to the mean speed, shot by shot, do not scatter with their speeds any
@@ -224,7 +204,7 @@ impl Columns {
             let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
             return Err(missing(&names.join("` or `"), instead(titles, wanted)));
         }
-        let incident = observables[0].as_ref().map(|of| of.value.title.as_str());
+        let incident = observables[0].as_ref().map(|of| titles[of.value].as_str());
         let correlation = CORRELATIONS[usize::from(incident == Some(AT_MEAN_SPEED[0]))];
         Ok(Self {
             correlation: find(titles, &[correlation]),
@@ -257,9 +237,8 @@ fn other_unit(titles: &[String], beginning: &str, unit: &str) -> String {
     })
 }
 
-fn find(titles: &[String], names: &[&str]) -> Option<TableColumn> {
-    let at = names.iter().find_map(|name| titles.iter().position(|title| title == name))?;
-    Some(TableColumn { at, title: titles[at].clone() })
+fn find(titles: &[String], names: &[&str]) -> Option<usize> {
+    names.iter().find_map(|name| titles.iter().position(|title| title == name))
 }
 
 /// The column of a quantity, and that of its error: `x_s_err`, `x_err_s`, or the same with `error`
@@ -332,39 +311,27 @@ fn wrong_speed_sigma(Estimate { value, sigma }: Estimate) -> Option<String> {
 
 struct Reader<'a> {
     file: &'a str,
-    defaults: &'a Defaults,
+    titles: &'a [String],
+    selection: &'a Selection,
     columns: Columns,
 }
 
 impl Reader<'_> {
-    fn wrong<T>(&self, line: u64, column: &TableColumn, what: &str) -> Result<T, InferError> {
-        InferError::input(format!("{}, line {line}, {}: {what}", self.file, column.title))
+    fn wrong<T>(&self, line: u64, column: usize, what: &str) -> Result<T, InferError> {
+        InferError::input(format!("{}, line {line}, {}: {what}", self.file, self.titles[column]))
     }
 
-    fn check(
-        &self,
-        wrong: Option<String>,
-        line: u64,
-        column: &TableColumn,
-    ) -> Result<(), InferError> {
+    fn check(&self, wrong: Option<String>, line: u64, column: usize) -> Result<(), InferError> {
         wrong.map_or(Ok(()), |what| self.wrong(line, column, &what))
     }
 
-    /// The number in a cell, if there is one.
-    fn number(&self, record: &Record, column: &TableColumn) -> Result<Option<f64>, InferError> {
-        match record.cells.get(column.at) {
-            None => Ok(None),
-            Some(Ok(number)) => Ok(*number),
-            Some(Err(text)) => self.wrong(record.line, column, &format!("`{text}` is no number")),
+    /// The number in a cell, if there are such a column and a number.
+    fn number(&self, record: &Record, column: Option<usize>) -> Result<Option<f64>, InferError> {
+        let Some(column) = column else { return Ok(None) };
+        match &record.cells[column] {
+            Ok(number) => Ok(*number),
+            Err(text) => self.wrong(record.line, column, &format!("`{text}` is no number")),
         }
-    }
-
-    fn optional(
-        &self,
-        record: &Record,
-        column: Option<&TableColumn>,
-    ) -> Result<Option<f64>, InferError> {
-        column.map_or(Ok(None), |column| self.number(record, column))
     }
 
     /// A row; none where nothing was seen at this speed.
@@ -380,8 +347,8 @@ impl Reader<'_> {
             freedom.values[of.index()] = self.freedom(record, columns, sigma)?;
             values[of.index()] = value;
         }
-        let correlation = self.optional(record, self.columns.correlation.as_ref())?;
-        if let (Some(value), Some(column)) = (correlation, &self.columns.correlation)
+        let correlation = self.number(record, self.columns.correlation)?;
+        if let (Some(value), Some(column)) = (correlation, self.columns.correlation)
             && (value.is_nan() || value.abs() >= 1.0)
         {
             let what = format!(
@@ -394,15 +361,15 @@ impl Reader<'_> {
     }
 
     fn speed(&self, record: &Record) -> Result<Estimate, InferError> {
-        let (line, Measured { value: column, sigma, .. }) = (record.line, &self.columns.speed);
-        let Some(value) = self.number(record, column)? else {
+        let (line, Measured { value: column, sigma, .. }) = (record.line, self.columns.speed);
+        let Some(value) = self.number(record, Some(column))? else {
             return self.wrong(line, column, "no speed; expected one in m/s");
         };
         self.check(wrong_speed(value), line, column)?;
-        let known = self.optional(record, sigma.as_ref())?;
-        let sigma_m_s = known.or(self.defaults.speed_m_s).unwrap_or(0.0);
+        let known = self.number(record, sigma)?;
+        let sigma_m_s = known.or(self.selection.speed_error_m_s).unwrap_or(0.0);
         let speed = Estimate { value, sigma: sigma_m_s };
-        self.check(wrong_speed_sigma(speed), line, sigma.as_ref().unwrap_or(column))?;
+        self.check(wrong_speed_sigma(speed), line, sigma.unwrap_or(column))?;
         Ok(speed)
     }
 
@@ -413,16 +380,16 @@ impl Reader<'_> {
         columns: &Measured,
     ) -> Result<Option<Estimate>, InferError> {
         let line = record.line;
-        let Some(value) = self.number(record, &columns.value)? else {
+        let Some(value) = self.number(record, Some(columns.value))? else {
             return Ok(None);
         };
-        self.check(wrong_value(of, value), line, &columns.value)?;
-        let known = self.optional(record, columns.sigma.as_ref())?;
+        self.check(wrong_value(of, value), line, columns.value)?;
+        let known = self.number(record, columns.sigma)?;
         let (usual, option) = match of.is_time() {
-            true => (self.defaults.time_s, "--tof-error"),
-            false => (self.defaults.ratio, "--ratio-error"),
+            true => (self.selection.time_error_s, "--tof-error"),
+            false => (self.selection.ratio_error, "--ratio-error"),
         };
-        let place = columns.sigma.as_ref().unwrap_or(&columns.value);
+        let place = columns.sigma.unwrap_or(columns.value);
         let Some(sigma) = known.or(usual) else {
             let what = format!(
                 "no uncertainty of this {}; expected a standard error in a column `{}_error`, or \
@@ -441,29 +408,26 @@ impl Reader<'_> {
     /// as one from an option is. Of an error part of which all shots share, and which is known,
     /// Satterthwaite's: the rest alone scatters.
     fn freedom(&self, record: &Record, columns: &Measured, sigma: f64) -> Result<f64, InferError> {
-        let own = columns.sigma.as_ref().and_then(|column| record.cells.get(column.at));
-        let has_own = own.is_some_and(|cell| !matches!(cell, Ok(None)));
-        match self.defaults.scatter {
+        let has_own = columns.sigma.is_some_and(|at| !matches!(record.cells[at], Ok(None)));
+        match self.selection.scatter {
             Scatter::Of(shots) => return Ok(f64::from(shots) - 1.0),
             Scatter::AsTold if has_own => {}
             _ => return Ok(f64::INFINITY),
         }
-        let Some(shots) = self.shots(record, columns)? else {
-            return Ok(f64::INFINITY);
-        };
-        let shared = self.optional(record, columns.shared.as_ref())?.unwrap_or(0.0);
+        let shots = self.shots(record, columns)?;
+        let shared = self.number(record, columns.shared)?.unwrap_or(0.0);
         let scattered = 1.0 - (shared / sigma).powi(2).min(1.0);
         // One shot has no scatter, nor has none: the error is known from elsewhere.
-        Ok(match shots > 1.0 {
-            true => (shots - 1.0) / scattered.powi(2),
-            false => f64::INFINITY,
+        Ok(match shots {
+            Some(shots) if shots > 1.0 => (shots - 1.0) / scattered.powi(2),
+            _ => f64::INFINITY,
         })
     }
 
     /// Number of shots that a mean is of.
     fn shots(&self, record: &Record, columns: &Measured) -> Result<Option<f64>, InferError> {
-        for column in columns.count.iter().chain(&self.columns.shots) {
-            if let Some(shots) = self.number(record, column)? {
+        for column in columns.count.into_iter().chain(self.columns.shots) {
+            if let Some(shots) = self.number(record, Some(column))? {
                 if shots < 0.0 || shots.fract() != 0.0 {
                     let what = format!("{shots} is no number of shots; expected a whole one");
                     return self.wrong(record.line, column, &what);

@@ -1,10 +1,9 @@
 //! Numbers of an experiment that a fit may change.
 //!
-//! `eta`, `wet.K`, `materials.steel.young_modulus`: a short name or a path of
-//! the experiment file. After a colon stands how it depends on the speed v of
-//! the striker: `K:power` for K₀ (v/(1 m/s))^k, as the paper gives the numbers
-//! of its oils; `K:each` for one value at every speed of the data; nothing for
-//! one value at all speeds.
+//! `eta`, `wet.K`, `materials.steel.young_modulus`: a short name or a path of the experiment file.
+//! After a colon stands how it depends on the speed v of the striker: `K:power` for K₀ (v/(1
+//! m/s))^k, as the paper gives the numbers of its oils; `K:each` for one value at every speed of
+//! the data; nothing for one value at all speeds.
 
 mod name;
 mod start;
@@ -44,8 +43,7 @@ pub struct FreeNumber {
     prior_sd: Option<f64>,
 }
 
-/// A prior's standard deviation is at most this part of what counts as the size of a change: a
-/// parameter is not undetermined that its prior determines.
+/// Most of a parameter's size that a prior's standard deviation may be, so that it is determined.
 const PART_OF_SIZE: f64 = 0.5;
 
 impl FreeNumber {
@@ -121,7 +119,7 @@ impl FreeNumber {
             let scale = start::scale(&self.target, start).max(sd.unwrap_or(0.0) / PART_OF_SIZE);
             let prior = sd.map_or(Prior::Flat, |sd| Prior::Normal { mean: start, sd });
             let parameter = Parameter::new(name, &self.unit, start).within(lower, upper);
-            Parameter { scale, ..parameter.with_prior(prior) }
+            Parameter { scale, prior, ..parameter }
         };
         match self.form {
             Form::Constant => vec![one(&self.name, value)],
@@ -229,8 +227,7 @@ pub(crate) struct Settings {
     pub(crate) numbers: Vec<(String, f64)>,
     /// Sensitivity of the wall's sensor over that of the bead's.
     pub(crate) wall_gain: f64,
-    /// That of the bead's sensor with its amplifier in V/N, if it is not the
-    /// experiment's.
+    /// That of the bead's sensor with its amplifier in V/N, if it is not the experiment's.
     pub(crate) sensor_gain_v_n: Option<f64>,
     /// Added to incident and reflected times.
     pub(crate) delays_s: [f64; 2],

@@ -46,7 +46,6 @@ const RADIUS_ERROR: &str = "radius_error";
 const DELAYS: [(&str, [f64; 2]); 3] =
     [("delay", [1.0, 0.0]), ("reflected_delay", [0.0, 1.0]), ("skew", [1.0, -1.0])];
 
-/// Where a free number goes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Target {
     /// A number of the file.
@@ -98,7 +97,6 @@ impl Target {
     }
 }
 
-/// A place that was found.
 pub(super) struct Found {
     pub(super) target: Target,
     pub(super) unit: String,

@@ -14,8 +14,7 @@ pub(super) const MOST_EXPONENT: f64 = 5.0;
 /// Poisson ratios of the paper's oils go beyond 1/2; the laws end below 1.
 const MOST_POISSON_RATIO: f64 = 0.999;
 
-/// The value to start from: asked for, given in the file, or what the file's
-/// materials make of it.
+/// The value to start from: asked for, given in the file, or derived from its materials.
 pub(super) fn of(experiment: &Experiment, found: &Found, asked: Option<f64>) -> Option<(f64, f64)> {
     let given = found.given.or_else(|| Some((derived(experiment, found)?, 0.0)));
     match asked {

@@ -1,7 +1,6 @@
 //! Which solution of each row to take.
 
-/// The solution of a row to take, and whether that is clear: every way through another bends much
-/// more.
+/// The solution of a row to take, and whether every other way bends much more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Chosen {
     pub(super) pair: usize,

@@ -54,8 +54,7 @@ pub struct Gauge {
     pub radius_m: f64,
     /// K and A of the dry contacts as the models have them.
     dry_contact: [f64; 2],
-    /// Number of nuisance parameters of each chain: the last of the dry model's numbers, and those
-    /// before K and A of the wet model's.
+    /// Nuisance parameters of each chain: last of the dry numbers, before K and A of the wet.
     own: usize,
 }
 

@@ -6,7 +6,7 @@ use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::Data;
 use crate::goodness::LEAST_BY_CHANCE;
 use crate::least_squares::{Descent, Merit, run};
-use crate::linear::{cholesky, dot, least_squares};
+use crate::linear::{cholesky, dot, forward, least_squares, square};
 use crate::{Covariance, DataRow, Fitting, InferError, Loss, Parameter, Problem, fit};
 use hertzchain_measure::signal::ChiSquare;
 use rayon::prelude::*;
@@ -47,8 +47,7 @@ pub struct Pair {
     pub covariance: [[f64; 2]; 2],
 }
 
-/// A value of which so many standard errors reach 0 is not determined, as neither K nor A can be
-/// less: its error is no ellipse's any more.
+/// A positive value of which so many standard errors reach 0 is not determined.
 const REACH: f64 = 2.0;
 
 /// Whether a positive number is known well enough to be reported with its standard error.
@@ -138,8 +137,7 @@ impl GaugeSolution {
     }
 }
 
-/// All solutions of a row, the smallest A first, at least one, and whether the search was complete;
-/// or why there is none.
+/// Solutions of a row, the smallest A first, and whether the search was complete; or why none.
 type Solved = Result<(Vec<GaugeSolution>, Option<bool>), String>;
 
 impl Gauge {
@@ -219,8 +217,7 @@ impl Gauge {
         })
     }
 
-    /// A row against the wet model with K and A from `at`, A within the range searched, the dry
-    /// contacts' numbers given.
+    /// A row against the wet model with K and A from `at`, the dry contacts' numbers given.
     fn row_problem(&self, row: usize, (free, at): (Free, [f64; 2]), dry: &[f64]) -> CurveProblem {
         let data = Data { rows: vec![self.data.rows[row].clone()], ..self.data.clone() };
         let numbers = &self.wet.numbers;
@@ -457,23 +454,14 @@ fn distinct(
 /// may move: rᵀ C⁻¹ r with C = 1 + D Dᵀ + s² S Sᵀ, D the moves and S the slopes by ln K and ln A,
 /// which make up for moves by small changes s.
 fn allowing(residuals: &[f64], slopes: &[Vec<f64>], moves: &[Vec<f64>]) -> f64 {
-    let all = 0..residuals.len();
-    let entry = |i: usize, j: usize| {
+    let covariance = square(residuals.len(), |i, j| {
         let own = f64::from(u8::from(i == j));
         let moved: f64 = moves.iter().map(|d| d[i] * d[j]).sum();
         own + moved + SMALL * SMALL * slopes.iter().map(|s| s[i] * s[j]).sum::<f64>()
-    };
-    let matrix: Vec<Vec<f64>> =
-        all.clone().map(|i| all.clone().map(|j| entry(i, j)).collect()).collect();
-    let Some(lower) = cholesky(&matrix) else {
-        return dot(residuals, residuals);
-    };
-    let mut white: Vec<f64> = Vec::new();
-    for (row, residual) in lower.iter().zip(residuals) {
-        let at = white.len();
-        white.push((residual - dot(&row[..at], &white)) / row[at]);
-    }
-    dot(&white, &white)
+    });
+    let white = cholesky(&covariance).map(|lower| forward(&lower, residuals));
+    let white = white.as_deref().unwrap_or(residuals);
+    dot(white, white)
 }
 
 #[cfg(test)]

@@ -172,7 +172,6 @@ impl Gauge {
     }
 }
 
-/// Chi-square of data and priors.
 fn whole_chi_square(problem: &CurveProblem, fit: &Fit) -> f64 {
     let priors = problem.parameters().iter().zip(&fit.point);
     let priors = priors.filter_map(|(parameter, value)| parameter.prior.residual(*value));

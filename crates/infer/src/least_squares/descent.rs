@@ -143,23 +143,20 @@ const FIRST_STEP: f64 = 1e-3;
 const AIM: f64 = 0.3;
 /// Where steps stay, in units of a parameter's scale.
 const STEPS: [f64; 2] = [1e-6, 1e-2];
-/// Singular values below this share of the largest have no part in the expected fall: differences
-/// do not resolve them.
+/// Singular values below this share of the largest are not resolved by differences.
 const RESOLVED: f64 = 1e-5;
 const LARGEST_DAMPING: f64 = 1e10;
 const LEAST_DAMPING: f64 = 1e-12;
 /// A fall of χ²/2 that no conclusion depends on.
 pub(super) const SMALL_FALL: f64 = 1e-3;
-/// Change of all residuals together, in σ, by a parameter's whole size, below which it counts for
-/// nothing.
+/// Change of all residuals, in σ, by a parameter's whole size, that counts for nothing.
 pub(super) const NOTICED: f64 = 0.01;
 /// Distance from the start, in units of the scale, from which a parameter diverges.
 const DIVERGED: f64 = 1e3;
 /// An expected fall that is hardly more than a model's noise: where a step does not gain at least a
 /// tenth of it, none will. It is 0.0014 standard errors.
 const QUIET_FALL: f64 = 1e-6;
-/// Iterations that gain less than a thousandth of what was expected, after which the model's noise
-/// is taken to be reached.
+/// Iterations that gain less than a thousandth of what was expected, before the descent ends.
 const IDLE: usize = 3;
 
 impl<'a> Descent<'a> {
@@ -389,7 +386,6 @@ impl<'a> Descent<'a> {
         self.at.as_ref().map_or(f64::INFINITY, |at| at.cost)
     }
 
-    /// Why it ended.
     pub(crate) fn ending(&self) -> Ending {
         match &self.stage {
             Stage::Done(ending) => ending.clone(),
@@ -425,8 +421,7 @@ impl Trials {
     }
 }
 
-/// Runs descents side by side to their ends, one call of the model for each round; returns how
-/// often the model was computed.
+/// Runs descents to their ends, one call of the model a round; returns how often it was computed.
 pub(crate) fn run(problem: &dyn Problem, descents: &mut [Descent<'_>]) -> usize {
     let mut evaluations = 0;
     loop {

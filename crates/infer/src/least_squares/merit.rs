@@ -283,12 +283,10 @@ pub(crate) fn slopes(
     Ok(Slopes { columns, ln_sigma })
 }
 
-/// Relative error of derivatives by rounding: the least singular value, of unit columns, that
-/// double precision resolves.
+/// Relative error of derivatives by rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// Share of the disagreement between two step sizes that the extrapolated derivatives are taken to
-/// be wrong by.
+/// Error of extrapolated derivatives as a share of the disagreement of both step sizes.
 pub(crate) const EXTRAPOLATED: f64 = 0.03;
 
 /// The same where a column may have a jump of the model, as where its solver takes another number

@@ -315,7 +315,6 @@ fn start_fails(parameters: &[Parameter], point: &[f64], error: &ModelError) -> I
     ))
 }
 
-/// Checks parameters and their number.
 pub(crate) fn check(problem: &dyn Problem) -> Result<(), InferError> {
     let parameters = problem.parameters();
     if parameters.is_empty() {
@@ -387,8 +386,7 @@ struct Loose {
     doubt: f64,
 }
 
-/// Expected fall of the cost along combinations that the rows determine; `None` if that is all of
-/// them.
+/// Expected fall of the cost along determined combinations; `None` if that is all of them.
 fn determined_fall(loose: &[Loose]) -> Option<f64> {
     let columns: Vec<Vec<f64>> = loose.iter().map(|one| one.column.clone()).collect();
     let errors: Vec<f64> = loose.iter().map(|one| one.doubt * norm(&one.column)).collect();

@@ -9,11 +9,9 @@ use crate::linear::dot;
 
 /// A model's signals in V, a row a channel, from the impact on.
 pub(super) struct Traced {
-    /// Time between samples in s.
     pub(super) interval_s: f64,
     /// When the passing pulse is highest, in s.
     pub(super) passing_s: f64,
-    /// Signals.
     pub(super) volts: Vec<Vec<f64>>,
     /// Their change with the logarithm of the speed.
     pub(super) by_ln_speed: Vec<Vec<f64>>,

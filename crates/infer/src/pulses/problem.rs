@@ -10,36 +10,10 @@ use hertzchain_experiment::Amplifier;
 use hertzchain_sim::{Fingerprint, Shot, count_done, shoot, stopped};
 use rayon::prelude::*;
 use std::fmt;
-use std::sync::Arc;
 
-/// What an amplifier's filters make of a signal, with a gain of one in the middle of their
-/// band: samples of a signal and their interval in s to samples of the filtered one.
-#[derive(Clone)]
-pub struct Respond(Arc<Filter>);
-
-type Filter = dyn Fn(&Amplifier, &[f64], f64) -> Vec<f64> + Send + Sync;
-
-impl Respond {
-    /// From a function.
-    pub fn new(
-        filter: impl Fn(&Amplifier, &[f64], f64) -> Vec<f64> + Send + Sync + 'static,
-    ) -> Self {
-        Self(Arc::new(filter))
-    }
-}
-
-impl Default for Respond {
-    /// Nothing stands between.
-    fn default() -> Self {
-        Self::new(|_, signal, _| signal.to_vec())
-    }
-}
-
-impl fmt::Debug for Respond {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("Respond")
-    }
-}
+/// What an amplifier's filters make of a signal, with a gain of one in the middle of their band:
+/// samples of a signal and their interval in s to samples of the filtered one.
+pub type Respond = fn(&Amplifier, &[f64], f64) -> Vec<f64>;
 
 /// Shots recorded sample by sample against those of a model.
 ///
@@ -82,9 +56,6 @@ impl PulseProblem {
     /// A model against records. Its parameters start where the model has them,
     /// the sensors' sensitivity where the first record has it. Records whose shot shows no
     /// pulse there are [left out](Self::left_out).
-    ///
-    /// # Errors
-    /// See [`InferError`].
     pub fn new(model: Model, records: Vec<Pulses>, respond: Respond) -> Result<Self, InferError> {
         let mut speeds_m_s: Vec<f64> = records.iter().map(|r| r.programmed_m_s).collect();
         speeds_m_s.sort_by(f64::total_cmp);
@@ -220,8 +191,7 @@ impl PulseProblem {
         }
     }
 
-    /// The sensors' sensitivity, if it is free, from what the first record has and the model's
-    /// passing force.
+    /// The sensors' sensitivity, if it is free, from the first record and the model's force.
     fn start_gain(&mut self, first: &FirstShot) {
         let gain = first.sensor_gain_v_n;
         let height_v = self.records.first().map_or(0.0, |record| record.height_v);
@@ -290,9 +260,8 @@ impl PulseProblem {
                 wall.iter().map(|w| wall_gain * w).collect(),
             ],
         };
-        let filtered = channels
-            .iter()
-            .map(|channel| (self.respond.0)(&shooting.amplifier, channel, interval_s));
+        let filtered =
+            channels.iter().map(|channel| (self.respond)(&shooting.amplifier, channel, interval_s));
         let filtered = filtered.collect();
         Ok((shot, filtered))
     }

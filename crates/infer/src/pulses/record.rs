@@ -7,16 +7,13 @@ use hertzchain_measure::signal::{
     normalisation, without_spikes,
 };
 
-/// Samples are used from so many incident times of flight before the passing
-/// pulse's maximum.
+/// Samples are used from so many incident times of flight before the first maximum.
 const BEFORE: f64 = 0.3;
 
-/// And to so many after it: one to the wall, a little more than one back, and
-/// the reflected pulse's tail.
+/// And to so many after it: to the wall and back, and the reflected pulse's tail.
 const AFTER: f64 = 2.5;
 
-/// Means of neighbouring samples are taken, so many in an incident time of
-/// flight: thirty in a pulse of the paper's chain.
+/// Means of neighbouring samples in an incident ToF: thirty in a pulse of the paper's chain.
 const PER_FLIGHT: f64 = 300.0;
 
 /// Quiet samples that determine a channel's offset and noise.
@@ -29,8 +26,7 @@ pub struct Pulses {
     pub source: String,
     /// Speed of the striker in m/s, as measured.
     pub speed_m_s: Estimate,
-    /// Programmed speed of the striker in m/s: shots of one such speed share
-    /// values a speed.
+    /// Programmed speed of the striker in m/s: shots of one such speed share values a speed.
     pub programmed_m_s: f64,
     /// Time between samples in s.
     pub interval_s: f64,
@@ -51,9 +47,6 @@ pub struct Pulses {
 
 impl Pulses {
     /// From a record's channels in V.
-    ///
-    /// # Errors
-    /// See [`InferError`].
     pub fn of(
         source: &str,
         (speed_m_s, programmed_m_s): (Option<Estimate>, Option<f64>),

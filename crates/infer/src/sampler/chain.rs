@@ -230,18 +230,14 @@ impl Chain {
         self.places.len()
     }
 
-    /// Steps between stored ones.
     pub(crate) fn keep_every(&self) -> u64 {
         self.keep_every
     }
 
     /// Share of proposals that were accepted.
     pub fn acceptance(&self) -> f64 {
-        self.accepted as f64 / self.proposed()
-    }
-
-    fn proposed(&self) -> f64 {
-        (self.steps as f64 * self.places.len() as f64).max(1.0)
+        let proposed = self.steps as f64 * self.places.len() as f64;
+        self.accepted as f64 / proposed.max(1.0)
     }
 
     /// Stored places of one walker's one parameter, in order.
@@ -257,8 +253,7 @@ fn names(problem: &dyn Problem) -> Vec<String> {
     problem.parameters().iter().map(|p| p.name.clone()).collect()
 }
 
-/// ln of likelihood times priors up to a constant, for points within bounds; −∞ where the model
-/// fails.
+/// ln of likelihood times priors up to a constant; −∞ where the model fails.
 fn ln_densities(problem: &dyn Problem, loss: Loss, points: &[Vec<f64>]) -> Vec<f64> {
     let merit = Merit::new(problem, loss);
     let mut found = problem.residuals(points).into_iter();
@@ -326,8 +321,7 @@ const TRIALS: usize = 30;
 /// Start of a walker along an unresolved direction, in units of scales.
 const UNRESOLVED: f64 = 0.1;
 
-/// Walkers of one ensemble around the optimum, spread like the covariance within the bounds, and
-/// their ln densities.
+/// Walkers around the optimum, spread like the covariance within bounds, and ln densities.
 fn walkers(
     problem: &dyn Problem,
     (fit, covariance): (&Fit, &Covariance),

@@ -1,6 +1,7 @@
 //! Convergence of a chain, and the posterior of one that has converged.
 
 use super::Chain;
+use crate::linear::square;
 use crate::{InferError, Problem};
 use hertzchain_sim::stopped;
 use std::fmt;
@@ -14,8 +15,7 @@ pub struct Autocorrelation {
     pub resolved: bool,
 }
 
-/// Width of the window in units of τ: [Sokal1997] has about 4 to 10 for correlations that fall
-/// exponentially.
+/// Width of the window in units of τ, after [Sokal1997].
 const WINDOW: f64 = 5.0;
 
 /// τ by Sokal's automatic window, from autocovariances about the mean of all chains and averaged
@@ -124,10 +124,6 @@ impl fmt::Display for Unconverged {
 const TOO_SHORT: f64 = 100.0;
 
 impl Chain {
-    /// State of each parameter's chains.
-    ///
-    /// # Errors
-    /// A chain that was damaged on disk.
     pub(crate) fn diagnose(&self) -> Result<Vec<Diagnosis>, InferError> {
         self.check()?;
         let diagnosis = |parameter: usize| {
@@ -256,14 +252,11 @@ impl Chain {
         };
         let samples: Vec<Vec<f64>> = (0..self.names().len()).map(by_step).collect();
         let mean: Vec<f64> = samples.iter().map(|s| mean_of(s)).collect();
-        let entry = |i: usize, j: usize| {
+        let covariance = square(mean.len(), |i, j| {
             let pairs = samples[i].iter().zip(&samples[j]);
             let products = pairs.map(|(a, b)| (a - mean[i]) * (b - mean[j]));
             products.sum::<f64>() / (samples[i].len() as f64 - 1.0)
-        };
-        let all = 0..mean.len();
-        let row = |i: usize| all.clone().map(|j| entry(i, j)).collect();
-        let covariance = all.clone().map(row).collect();
+        });
         let mut ascending = samples.clone();
         // A million samples take their time: not after a request to stop.
         if !stopped() {

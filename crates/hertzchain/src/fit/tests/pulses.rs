@@ -35,7 +35,7 @@ fn best_fit(rig: &Experiment, model: &Experiment, free: &[&str]) -> Vec<f64> {
     let numbers = FreeNumbers::new(free.iter().map(find).collect()).unwrap();
     // So that the solver's own errors are below what is looked for.
     let model = Model::new(model, numbers).unwrap().with_accuracy(1e-7);
-    let problem = PulseProblem::new(model, records, respond()).unwrap();
+    let problem = PulseProblem::new(model, records, filtered).unwrap();
     fit(&problem, &Fitting::default()).unwrap().point
 }
 

@@ -1,26 +1,23 @@
 //! The room around a fit in units of its own errors.
 
 use super::{no_room, side};
-use crate::linear::{cholesky, norm};
+use crate::linear::{cholesky, dot, forward, norm, square};
 use crate::problem::Problem;
 use crate::random::{Purpose, RandomStream};
 use crate::{Covariance, Fit, InferError, Parameter};
 
-/// All points within so many standard errors of a fit in every direction of its
-/// covariance, and within the parameters' bounds.
+/// All points within bounds and so many standard errors of a fit in every direction.
 #[derive(Clone, Debug)]
 pub(super) struct Ball {
     centre: Vec<f64>,
     sd: Vec<f64>,
-    /// L of the correlations L Lᵀ, row by row: what stands between parameters in
-    /// units of their errors and numbers that know nothing of each other.
+    /// L of the correlations L Lᵀ, row by row.
     lower: Vec<Vec<f64>>,
     reach: f64,
     parameters: Vec<Parameter>,
 }
 
-/// Draws for one point before bounds are said to leave no room: a corner of eight
-/// bounds has one in 2⁸.
+/// Draws for one point before bounds leave no room: a corner of eight has one in 2⁸.
 const MOST_DRAWS: usize = 100_000;
 
 impl Ball {
@@ -35,29 +32,17 @@ impl Ball {
         for (at, parameter) in parameters.iter().enumerate() {
             side(parameter, centre[at], reach, sd[at])?;
         }
-        let all = 0..sd.len();
-        let row = |i: usize| {
-            let entry = |j: usize| covariance.matrix[i][j] / (sd[i] * sd[j]);
-            all.clone().map(entry).collect()
-        };
-        let correlations: Vec<Vec<f64>> = all.clone().map(row).collect();
+        let correlations = square(sd.len(), |i, j| covariance.matrix[i][j] / (sd[i] * sd[j]));
         Ok(Self { lower: cholesky(&correlations).ok_or(no_room())?, centre, sd, reach, parameters })
     }
 
-    /// A point in independent standard errors: by forward substitution.
-    pub(super) fn whitened(&self, point: &[f64]) -> Vec<f64> {
-        let mut white: Vec<f64> = Vec::with_capacity(point.len());
-        for (at, row) in self.lower.iter().enumerate() {
-            let aside = (point[at] - self.centre[at]) / self.sd[at];
-            let known: f64 = row.iter().zip(&white).map(|(l, z)| l * z).sum();
-            white.push((aside - known) / row[at]);
-        }
-        white
-    }
-
-    /// Whether it reaches so far.
-    pub(super) fn covers(&self, white: &[f64]) -> bool {
-        norm(white) <= self.reach
+    /// A point in independent standard errors, and whether the ball reaches so far.
+    pub(super) fn whitened(&self, point: &[f64]) -> (Vec<f64>, bool) {
+        let aside = point.iter().zip(&self.centre).zip(&self.sd);
+        let aside: Vec<f64> = aside.map(|((x, centre), sd)| (x - centre) / sd).collect();
+        let white = forward(&self.lower, &aside);
+        let is_covered = norm(&white) <= self.reach;
+        (white, is_covered)
     }
 
     /// A point of it, at a distance that `share` makes of an even number from 0 to 1.
@@ -80,15 +65,11 @@ impl Ball {
     }
 
     fn place(&self, white: &[f64]) -> Vec<f64> {
-        let place = |(at, row): (usize, &Vec<f64>)| {
-            let aside: f64 = row.iter().zip(white).map(|(l, z)| l * z).sum();
-            self.centre[at] + self.sd[at] * aside
-        };
-        self.lower.iter().enumerate().map(place).collect()
+        let rows = self.lower.iter().enumerate();
+        rows.map(|(at, row)| self.centre[at] + self.sd[at] * dot(row, white)).collect()
     }
 
-    /// Its own stream of random, whatever the seed of a fit: one problem has one
-    /// surrogate.
+    /// Its own stream, whatever the seed of a fit: one problem has one surrogate.
     pub(super) fn random() -> RandomStream {
         RandomStream::new(0, Purpose::Surrogate)
     }

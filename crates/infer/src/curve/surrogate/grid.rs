@@ -2,6 +2,7 @@
 
 use super::{model_fails, side, too_many};
 use crate::curve::{CurveProblem, Predicted};
+use crate::linear::unit;
 use crate::problem::Problem;
 use crate::{Covariance, Fit, InferError};
 use std::f64::consts::PI;
@@ -9,8 +10,7 @@ use std::f64::consts::PI;
 /// Nodes a parameter, for one to four parameters: some hundreds of curves in all.
 const NODES: [usize; 4] = [11, 9, 7, 5];
 
-/// Parameters that a grid bears: five values of each of five would be thousands of
-/// curves.
+/// Parameters that a grid bears: five values of five would be thousands of curves.
 pub(super) const MOST_PARAMETERS: usize = NODES.len();
 
 /// Points at which a grid is held against the model.
@@ -22,8 +22,7 @@ pub(super) struct Grid {
     /// Middle and half width of each parameter's side.
     sides: Vec<(f64, f64)>,
     nodes: usize,
-    /// ln of predictions at all nodes, the last parameter's running fastest; not
-    /// a number where there is none.
+    /// ln of predictions at all nodes, the last parameter's running fastest; NaN where none.
     table: Vec<Vec<[f64; 4]>>,
 }
 
@@ -73,7 +72,6 @@ impl Grid {
             .collect()
     }
 
-    /// The curve inside the box.
     pub(super) fn curve(&self, point: &[f64]) -> Option<Vec<Predicted>> {
         let weights = self.weights(point)?;
         let rows = self.table.first().map_or(0, Vec::len);
@@ -123,7 +121,7 @@ fn chebyshev(number: usize, nodes: usize) -> f64 {
 fn barycentric(x: f64, nodes: usize) -> Vec<f64> {
     let angle = |number: usize| PI * (2.0 * number as f64 + 1.0) / (2.0 * nodes as f64);
     if let Some(hit) = (0..nodes).find(|&number| x == chebyshev(number, nodes)) {
-        return (0..nodes).map(|n| f64::from(u8::from(n == hit))).collect();
+        return unit(nodes, hit);
     }
     let term = |number: usize| {
         let sign = if number.is_multiple_of(2) { 1.0 } else { -1.0 };

@@ -1,10 +1,9 @@
 //! Curves by polynomials through curves computed before.
 //!
-//! A posterior needs a million curves that differ little. Near the best fit the
-//! logarithm of every time of flight is a smooth function of the parameters, which a
-//! polynomial gives to a small part of a standard error: of few parameters through
-//! curves at the nodes of a grid, of many by least squares on curves at random. How
-//! small is measured, at points between.
+//! A posterior needs a million curves that differ little. Near the best fit the logarithm of every
+//! time of flight is a smooth function of the parameters, which a polynomial gives to a small part
+//! of a standard error: of few parameters through curves at the nodes of a grid, of many by least
+//! squares on curves at random. How small is measured, at points between.
 
 mod ball;
 mod grid;
@@ -20,16 +19,13 @@ use hertzchain_sim::count_done;
 use polynomial::Polynomial;
 use rayon::prelude::*;
 
-/// Half the width of what a surrogate covers in standard errors, unless another
-/// is asked for.
+/// Half the usual width of what a surrogate covers in standard errors.
 const REACH: f64 = 6.0;
 
-/// Accuracy of its curves over the problem's own: a polynomial through many nodes
-/// multiplies their errors.
+/// Accuracy of its curves over the problem's: polynomials multiply their errors.
 const FINER: f64 = 0.1;
 
-/// Error at which no better polynomial is looked for, in standard errors: half of what is
-/// allowed.
+/// Error in standard errors at which no better polynomial is looked for.
 const AIM: f64 = 0.5 * Surrogate::ALLOWED;
 
 /// Of so many speeds one may be computed.
@@ -63,7 +59,6 @@ pub struct Surrogate {
     pub error: f64,
 }
 
-/// What curves are made of.
 #[derive(Clone, Debug)]
 enum Form {
     Grid(Grid),
@@ -81,19 +76,14 @@ impl Form {
 }
 
 impl Surrogate {
-    /// Parameters that it bears: polynomials of the third degree in more have
-    /// thousands of terms.
+    /// Parameters that it bears: polynomials of the third degree in more have thousands of terms.
     pub const MOST_PARAMETERS: usize = polynomial::MOST_PARAMETERS;
 
     /// Largest error of a surrogate that may stand for the model, in standard errors.
     const ALLOWED: f64 = 0.1;
 
-    /// Around a fit, six standard errors to either side. Up to four parameters have a
-    /// grid; more, or those for which a grid is too coarse, a polynomial of least
-    /// squares.
-    ///
-    /// # Errors
-    /// See [`InferError`].
+    /// Around a fit, six standard errors to either side. Up to four parameters have a grid; more,
+    /// or those for which a grid is too coarse, a polynomial of least squares.
     pub fn new(
         problem: &CurveProblem,
         fit: &Fit,
@@ -109,9 +99,6 @@ impl Surrogate {
 
     /// Around a fit, so many standard errors to either side, on a grid: for repetitions
     /// whose best fits scatter about this one.
-    ///
-    /// # Errors
-    /// See [`InferError`].
     pub fn within(
         reach: f64,
         problem: &CurveProblem,
@@ -137,9 +124,6 @@ impl Surrogate {
     /// Around a fit, as many standard errors in every direction of the covariance, by
     /// polynomials of rising degree until one is right. Speeds at which none is, where the model
     /// jumps, are computed, if they are few.
-    ///
-    /// # Errors
-    /// See [`InferError`].
     fn by_least_squares(
         problem: &CurveProblem,
         fit: &Fit,
@@ -191,9 +175,6 @@ impl Surrogate {
     }
 
     /// The same curves against other measured values at the same speeds.
-    ///
-    /// # Errors
-    /// See [`InferError`].
     pub fn with_data(&self, data: impl IntoIterator<Item = Data>) -> Result<Self, InferError> {
         Ok(Self { problem: self.problem.with_data(data)?, ..self.clone() })
     }
@@ -204,8 +185,7 @@ fn finer(problem: &CurveProblem) -> CurveProblem {
     problem.clone().with_accuracy(accuracy)
 }
 
-/// The middle of a parameter's range and half its width, so many standard errors
-/// to either side within bounds.
+/// Middle and half width of a parameter's range within so many standard errors and bounds.
 fn side(parameter: &Parameter, value: f64, reach: f64, sd: f64) -> Result<(f64, f64), InferError> {
     if !(sd > 0.0 && sd.is_finite()) {
         let name = &parameter.name;

@@ -8,15 +8,13 @@ use crate::random::RandomStream;
 use crate::{Covariance, Fit, InferError};
 use rayon::prelude::*;
 
-/// Parameters that it bears: those of which a cubic has no more terms than are
-/// allowed.
+/// Most parameters: a cubic of more has too many terms.
 pub(super) const MOST_PARAMETERS: usize = 18;
 
 /// Terms of a polynomial: with twice as many curves, some seconds of work.
 const MOST_TERMS: usize = 1500;
 
-/// Curves a term: with twice as many as unknowns least squares in Chebyshev's
-/// polynomials are as good as sure.
+/// Curves a term, with which least squares in Chebyshev's polynomials are as good as certain.
 const CURVES_A_TERM: usize = 2;
 
 /// Points at which a polynomial is held against the model.
@@ -41,8 +39,7 @@ pub(super) struct Polynomial {
     weights: Vec<Vec<f64>>,
 }
 
-/// A product of Chebyshev's polynomials: an earlier term's times one of another
-/// parameter.
+/// A product of Chebyshev's polynomials: an earlier term times one of another parameter.
 #[derive(Clone, Copy, Debug)]
 struct PolynomialTerm {
     /// The earlier term.
@@ -157,7 +154,7 @@ impl Polynomial {
     /// By least squares on all curves of a study.
     fn of(study: &Study, problem: &CurveProblem, terms: Vec<PolynomialTerm>) -> Self {
         let white: Vec<Vec<f64>> =
-            (study.points.iter()).map(|point| study.ball.whitened(point)).collect();
+            (study.points.iter()).map(|point| study.ball.whitened(point).0).collect();
         let speeds = study.curves.first().map_or(0, Vec::len);
         let outputs = outputs(problem, speeds);
         let mut polynomial = Self {
@@ -192,10 +189,9 @@ impl Polynomial {
         values
     }
 
-    /// The curve inside the ball.
     pub(super) fn curve(&self, point: &[f64]) -> Option<Vec<Predicted>> {
-        let white = self.ball.whitened(point);
-        if !self.ball.covers(&white) {
+        let (white, is_covered) = self.ball.whitened(point);
+        if !is_covered {
             return None;
         }
         let mut sums = vec![0.0; self.outputs.len()];
@@ -212,8 +208,7 @@ impl Polynomial {
     }
 }
 
-/// Every product of Chebyshev's polynomials up to a degree in all, the constant
-/// first, factors before what they are factors of.
+/// Products of Chebyshev's polynomials up to a degree in all, factors before products.
 fn terms(parameters: usize, degree: usize) -> Vec<PolynomialTerm> {
     let constant = PolynomialTerm { of: 0, parameter: 0, degree: 0 };
     let mut found = vec![(constant, 0)];

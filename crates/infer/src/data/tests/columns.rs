@@ -12,10 +12,10 @@ fn errors_are_found_under_the_names_of_both_tables_of_measure() {
     ] {
         let wanted = [Observable::Incident];
         let columns = Columns::of(&titles(text), &wanted, "a.csv").unwrap();
-        assert_eq!(columns.speed.sigma.unwrap().at, 2, "{text}");
-        let incident = columns.observables[0].clone().unwrap();
+        assert_eq!(columns.speed.sigma, Some(2), "{text}");
+        let incident = columns.observables[0].unwrap();
         let last = titles(text).len() - 1;
-        assert_eq!(incident.sigma.unwrap().at, last, "{text}");
+        assert_eq!(incident.sigma, Some(last), "{text}");
     }
 }
 
@@ -40,8 +40,8 @@ fn times_at_the_mean_speed_are_read_before_means_that_scatter_with_speeds() {
     let text = "speed_m_s,tof_incident_s,tof_incident_s_error,\
                 tof_incident_at_mean_speed_s,tof_incident_at_mean_speed_s_error";
     let columns = Columns::of(&titles(text), &Observable::ALL, "a.csv").unwrap();
-    let incident = columns.observables[0].clone().unwrap();
-    assert_eq!((incident.value.at, incident.sigma.unwrap().at), (3, 4));
+    let incident = columns.observables[0].unwrap();
+    assert_eq!((incident.value, incident.sigma), (3, Some(4)));
     let columns = Columns::of(&titles(text), &[Observable::Reflected], "a.csv");
     assert!(columns.is_err());
 }
