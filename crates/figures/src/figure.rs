@@ -179,7 +179,6 @@ impl Figure {
         files::pdf(&self.drawn(), self.page())
     }
 
-    /// Width and height in points.
     fn page(&self) -> (f64, f64) {
         (self.width_mm * PT_PER_MM, self.height_mm * PT_PER_MM)
     }
@@ -231,7 +230,6 @@ impl Figure {
     }
 }
 
-/// (a) to (z), then numbers.
 fn panel_letter(index: usize) -> String {
     match u8::try_from(index) {
         Ok(i) if i < 26 => format!("({})", char::from(b'a' + i)),

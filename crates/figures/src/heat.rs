@@ -141,8 +141,7 @@ impl HeatMap {
         canvas.items.push(Item::Image(plot.frame, map));
     }
 
-    /// Of all values under a pixel the one of largest size, so that a narrow
-    /// pulse stays visible.
+    /// The largest of all values under a pixel, so that a narrow pulse stays visible.
     fn strongest(&self, columns: &Range<usize>, rows: &Range<usize>) -> f64 {
         let mut best = f64::NAN;
         for row in rows.clone() {

@@ -4,9 +4,8 @@
 //! [`HeatMap`], a [`VerdictMatrix`], or a [`RigDrawing`]. All data come as
 //! plain slices. An [`Animation`] becomes one HTML file that needs nothing else.
 //!
-//! Text is markup: inside `$...$`, `v_0`, `10^{-5}`, `K_{\mathrm{eff}}` and
-//! `\alpha` are set as in TeX; outside everything is literal apart from
-//! commands such as `\mu`.
+//! Text is markup: inside `$...$`, `v_0`, `10^{-5}`, `K_{\mathrm{eff}}` and `\alpha` are set as in
+//! TeX; outside everything is literal apart from commands such as `\mu`.
 #![doc = include_str!("../README.md")]
 
 pub mod inference;

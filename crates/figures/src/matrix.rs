@@ -107,10 +107,7 @@ impl VerdictMatrix {
     pub(crate) fn draw(&self, canvas: &mut Canvas, frame: &Rect) {
         let layout = MatrixLayout::new(self, (frame.width() + MARGINS) / PT_PER_MM);
         let (width, height) = layout.size();
-        let fit = (frame.width() / width).min(frame.height() / height);
-        // The page was made for it up to rounding.
-        let scale = if fit > 0.999 { 1.0 } else { fit };
-        canvas.scaled(Point::new(frame.x0, frame.y0), scale, |canvas| {
+        canvas.shrunk_to(frame, (width, 0.0, height), |canvas| {
             layout.draw_header(canvas, self);
             let y = layout.draw_rows(canvas, self);
             layout.draw_below(canvas, y);
@@ -180,16 +177,11 @@ impl MatrixLayout {
     }
 
     fn size(&self) -> (f64, f64) {
-        let rows: f64 = (0..self.claims.len()).map(|i| self.row_height(i)).sum();
+        let rows: f64 = self.claims.iter().map(|lines| row_height(lines)).sum();
         let width = self.labels + self.cell * self.headers.len() as f64;
-        let below = self.below.iter().map(|(_, lines)| below_height(lines));
-        let height = self.header + rows + below.sum::<f64>() + KEY;
+        let below: f64 = self.below.iter().map(|(_, lines)| below_height(lines)).sum();
+        let height = self.header + rows + below + KEY;
         (width.max(self.key_width()), height)
-    }
-
-    fn row_height(&self, row: usize) -> f64 {
-        let lines = self.claims.get(row).map_or(1, |l| l.len().max(1));
-        (lines as f64 * LEADING + 3.0).max(SMALLEST_CELL + 2.0)
     }
 
     fn cell_centre(&self, column: usize) -> f64 {
@@ -212,8 +204,10 @@ impl MatrixLayout {
         let (mut y, mut rules) = (self.header, PathData::new());
         let right = self.labels + self.cell * self.headers.len() as f64;
         for (row, (_, cells)) in matrix.rows.iter().enumerate() {
-            let height = self.row_height(row);
-            self.draw_claim(canvas, row, y + 0.5 * height);
+            let height = row_height(&self.claims[row]);
+            let lines = &self.claims[row];
+            let first = y + 0.5 * height - 0.5 * LEADING * (lines.len() as f64 - 1.0);
+            canvas.lines(lines, Point::new(PADDING, first), LEADING, Anchor::LEFT_MIDDLE);
             for (column, verdict) in cells.iter().take(matrix.columns.len()).enumerate() {
                 let x = self.cell_centre(column) - 0.5 * self.cell;
                 draw_symbol(canvas, *verdict, &Rect::sized(x, y, self.cell, height).grown(-0.5));
@@ -234,20 +228,8 @@ impl MatrixLayout {
             if let Some(verdict) = verdict {
                 draw_symbol(canvas, *verdict, &Rect::sized(0.0, middle - 4.5, 11.0, 9.0));
             }
-            for (i, line) in lines.iter().enumerate() {
-                let at = Point::new(x, middle + LEADING * i as f64);
-                line.draw(canvas, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
-            }
+            canvas.lines(lines, Point::new(x, middle), LEADING, Anchor::LEFT_MIDDLE);
             y += below_height(lines);
-        }
-    }
-
-    fn draw_claim(&self, canvas: &mut Canvas, row: usize, middle: f64) {
-        let lines = self.claims.get(row).map_or(&[][..], Vec::as_slice);
-        let first = middle - 0.5 * LEADING * (lines.len() as f64 - 1.0);
-        for (i, line) in lines.iter().enumerate() {
-            let at = Point::new(PADDING, first + LEADING * i as f64);
-            line.draw(canvas, at, Anchor::LEFT_MIDDLE, Colour::BLACK);
         }
     }
 
@@ -269,13 +251,16 @@ impl MatrixLayout {
     }
 }
 
+fn row_height(claim: &[TextLine]) -> f64 {
+    (claim.len().max(1) as f64 * LEADING + 3.0).max(SMALLEST_CELL + 2.0)
+}
+
 /// Height of a line of text below the rows, however often it breaks.
 fn below_height(lines: &[TextLine]) -> f64 {
     PADDING + LEADING * lines.len().max(1) as f64
 }
 
-/// Fills `cell` and draws the symbol of a verdict in its middle, as a path: it does not depend on
-/// what a font offers.
+/// Fills `cell` and draws the symbol of a verdict, as a path that needs no font.
 fn draw_symbol(canvas: &mut Canvas, verdict: ClaimVerdict, cell: &Rect) {
     canvas.rect(cell, &Paint::fill(verdict.colour()));
     let (c, r) = (cell.centre(), 0.3 * cell.width().min(cell.height()).min(11.0));

@@ -17,8 +17,7 @@ pub enum RigEnd {
     Open,
 }
 
-/// The parts of an apparatus. Parts that are `None`, `false` or without a label
-/// are left out.
+/// The parts of an apparatus. Parts that are `None`, `false` or without a label are left out.
 ///
 /// The default is an empty track.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -109,10 +108,7 @@ impl RigDrawing {
     /// Draws the rig, shrunk to fit the frame.
     pub(crate) fn draw(&self, canvas: &mut Canvas, frame: &Rect) {
         let (above, below) = self.drawn(&mut Canvas::default());
-        let fit = (frame.width() / WIDTH).min(frame.height() / (above + below));
-        // The page was made for it up to rounding.
-        let scale = if fit > 0.999 { 1.0 } else { fit };
-        canvas.scaled(Point::new(frame.x0, frame.y0 + scale * above), scale, |canvas| {
+        canvas.shrunk_to(frame, (WIDTH, above, below), |canvas| {
             self.drawn(canvas);
         });
     }
@@ -142,10 +138,7 @@ impl RigDrawing {
             key += &format!("; the track, drawn level, is inclined by $\\alpha$ = {angle}°");
         }
         let lines = wrap(&(key + "."), FONT, WIDTH, 40);
-        for (i, line) in lines.iter().enumerate() {
-            let at = Point::new(0.0, floor + LEADING * (i as f64 + 2.0));
-            line.draw(canvas, at, Anchor::LEFT, Colour::BLACK);
-        }
+        canvas.lines(&lines, Point::new(0.0, floor + LEADING * 2.0), LEADING, Anchor::LEFT);
         (LEADING - ROOF, floor + LEADING * (lines.len() + 1) as f64 + 3.0)
     }
 

@@ -175,8 +175,7 @@ fn colours() -> String {
     hex.collect()
 }
 
-/// Linear interpolation of `(times, values)` at the ascending times of `grid`.
-/// Values that are not finite are passed over.
+/// Linear interpolation at ascending times; values that are not finite are passed over.
 fn resampled(times: &[f64], values: &[f64], grid: &[f64]) -> Vec<f64> {
     let known: Vec<(f64, f64)> = times
         .iter()
@@ -195,8 +194,7 @@ fn resampled(times: &[f64], values: &[f64], grid: &[f64]) -> Vec<f64> {
     grid.iter().map(|t| at(*t)).collect()
 }
 
-/// All values as shares of their common range in sixteen bits, row after row,
-/// and that range.
+/// All values as shares of their common range in sixteen bits, and that range.
 fn quantised(rows: &[Vec<f64>]) -> (Vec<u16>, (f64, f64)) {
     let all = || rows.iter().flatten().copied();
     let (lo, hi) = all().fold((0.0_f64, 0.0_f64), |(lo, hi), v| (lo.min(v), hi.max(v)));

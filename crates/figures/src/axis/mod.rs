@@ -6,14 +6,12 @@ pub(crate) use scale::{Extent, Scale};
 
 use crate::text::TextLine;
 
-/// A labelled tick.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tick {
     pub(crate) value: f64,
     pub(crate) label: String,
 }
 
-/// All ticks of one axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Ticks {
     pub(crate) major: Vec<Tick>,
@@ -49,7 +47,6 @@ impl Ticks {
 /// The room an axis offers its labels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Room {
-    /// Length of the axis, points.
     pub(crate) length: f64,
     /// Font size of the labels, points.
     pub(crate) font: f64,
@@ -113,11 +110,6 @@ impl TickStep {
     fn multiple(self, n: f64) -> f64 {
         times_power(n * self.mantissa(), self.exponent())
     }
-
-    /// Small steps per labelled step.
-    fn subdivisions(self) -> f64 {
-        if self.mantissa() == 2.0 { 4.0 } else { 5.0 }
-    }
 }
 
 /// More changes of step than any sound range needs.
@@ -179,7 +171,7 @@ fn multiples(scale: &Scale, step: f64) -> impl Iterator<Item = f64> {
 }
 
 fn minor(scale: &Scale, step: TickStep) -> Vec<f64> {
-    let parts = step.subdivisions();
+    let parts = if step.mantissa() == 2.0 { 4.0 } else { 5.0 };
     multiples(scale, step.size() / parts)
         .filter(|n| n.rem_euclid(parts) != 0.0)
         .map(|n| step.multiple(n / parts))
@@ -207,19 +199,12 @@ fn log_ticks(scale: &Scale, room: &Room) -> Ticks {
         .filter(|(mantissas, _)| mantissas.len() == 1 || scale.decades() <= MANY_DECADES)
         .map(|(mantissas, every)| powers(scale, mantissas, *every))
         .find(|major| major.len() <= room.most() && room.fits(scale, major))
-        .unwrap_or_else(|| powers(scale, &[1], sparse(scale)));
-    if found.len() < 3 && scale.decades() < 1.0 {
-        return even_steps(scale, room);
-    }
-    if found.len() < 2 {
+        // About five labels.
+        .unwrap_or_else(|| powers(scale, &[1], ((scale.decades() / 5.0).ceil() as i32).max(1)));
+    if found.len() < 2 || found.len() < 3 && scale.decades() < 1.0 {
         return even_steps(scale, room);
     }
     Ticks { minor: unlabelled(scale, &found), major: found, exponent: None }
-}
-
-/// Decades between labels so that about five remain.
-fn sparse(scale: &Scale) -> i32 {
-    ((scale.decades() / 5.0).ceil() as i32).max(1)
 }
 
 /// Within a small part of a decade a logarithmic axis is nearly linear.
@@ -238,7 +223,7 @@ fn even_steps(scale: &Scale, room: &Room) -> Ticks {
 fn powers(scale: &Scale, mantissas: &[u32], every: i32) -> Vec<Tick> {
     let written_out = scale.lo >= 9.9e-4 && scale.hi <= 1.01e5;
     let write = if written_out { plain } else { power };
-    exponents(scale)
+    ((scale.lo.log10().floor() as i32)..=(scale.hi.log10().ceil() as i32))
         .filter(|e| e.rem_euclid(every) == 0)
         .flat_map(|e| mantissas.iter().map(move |m| (*m, e)))
         .filter(|(m, e)| scale.holds(value(*m, *e)))
@@ -255,10 +240,6 @@ fn unlabelled(scale: &Scale, major: &[Tick]) -> Vec<f64> {
     let mut found: Vec<f64> = powers(scale, mantissas, 1).iter().map(|t| t.value).collect();
     found.retain(|v| major.iter().all(|t| t.value != *v));
     found
-}
-
-fn exponents(scale: &Scale) -> std::ops::RangeInclusive<i32> {
-    (scale.lo.log10().floor() as i32)..=(scale.hi.log10().ceil() as i32)
 }
 
 /// `mantissa * 10^exponent`, exact for the decimals a label shows.

@@ -196,7 +196,6 @@ impl LegendBox {
         legend
     }
 
-    /// Width of one entry.
     fn cell(&self) -> f64 {
         let widths = self.entries.iter().map(|(_, name)| name.width());
         widths.fold(0.0, f64::max) + self.sample + SMALL

@@ -10,7 +10,6 @@ pub(crate) use layout::{Plot, Prepared, x_scale};
 use crate::draw::Colour;
 use crate::heat::HeatMap;
 
-/// One axis as asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Axis {
     pub(crate) label: String,

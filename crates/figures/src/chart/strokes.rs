@@ -63,7 +63,6 @@ fn unbroken(points: impl Iterator<Item = Option<Point>>) -> Vec<Vec<Point>> {
     runs.map(|run| run.iter().copied().flatten().collect()).collect()
 }
 
-/// Marker centres inside the frame.
 pub(super) fn centres(plot: &Plot, series: &Series) -> Vec<Point> {
     let inside = plot.frame.grown(0.01);
     let points = series.xy().filter_map(|(x, y)| plot.at(x, y));

@@ -3,7 +3,6 @@
 use super::{Colour, Point, Rect};
 use crate::text::{Anchor, TextLine};
 
-/// A step of an outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Segment {
     Move(Point),
@@ -25,7 +24,6 @@ impl Segment {
     }
 }
 
-/// Outlines, built step by step.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct PathData(pub(crate) Vec<Segment>);
 
@@ -99,7 +97,6 @@ impl PathData {
     }
 }
 
-/// A line's look.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stroke {
     pub(crate) colour: Colour,
@@ -107,7 +104,6 @@ pub(crate) struct Stroke {
     pub(crate) dash: &'static [f64],
 }
 
-/// How a path is painted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Paint {
     pub(crate) fill: Option<Colour>,
@@ -156,7 +152,6 @@ pub(crate) struct PlacedText {
     pub(crate) angle_deg: f64,
 }
 
-/// Something drawn.
 #[derive(Debug, Clone)]
 pub(crate) enum Item {
     Path(PathData, Paint),
@@ -216,11 +211,28 @@ impl Canvas {
         self.path(PathData::new().circle(centre, radius), paint);
     }
 
-    /// Moves and scales what is drawn.
-    pub(crate) fn scaled(&mut self, origin: Point, scale: f64, draw: impl FnOnce(&mut Self)) {
+    /// Shrinks to a frame what is so wide, and so high above and below its origin.
+    pub(crate) fn shrunk_to(
+        &mut self,
+        frame: &Rect,
+        (width, above, below): (f64, f64, f64),
+        draw: impl FnOnce(&mut Self),
+    ) {
+        let fit = (frame.width() / width).min(frame.height() / (above + below));
+        // The page was made for it up to rounding.
+        let scale = if fit > 0.999 { 1.0 } else { fit };
         let mut inner = Self::default();
         draw(&mut inner);
-        let at = |p: Point| Point::new(origin.x + scale * p.x, origin.y + scale * p.y);
+        let (left, top) = (frame.x0, frame.y0 + scale * above);
+        let at = |p: Point| Point::new(left + scale * p.x, top + scale * p.y);
         self.items.extend(inner.items.into_iter().map(|item| item.placed(&at, scale)));
+    }
+
+    /// Lines of text below each other, the first at a place.
+    pub(crate) fn lines(&mut self, lines: &[TextLine], at: Point, leading: f64, anchor: Anchor) {
+        for (i, line) in lines.iter().enumerate() {
+            let at = Point::new(at.x, at.y + leading * i as f64);
+            line.draw(self, at, anchor, Colour::BLACK);
+        }
     }
 }

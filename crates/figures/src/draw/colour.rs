@@ -16,7 +16,6 @@ pub struct Colour(
 impl Colour {
     /// Black.
     pub const BLACK: Self = Self(0, 0, 0);
-    /// White.
     pub(crate) const WHITE: Self = Self(255, 255, 255);
     /// Mid grey for reference lines.
     pub const GREY: Self = Self(115, 115, 115);

@@ -9,10 +9,8 @@ pub(crate) use canvas::{Canvas, Item, Paint, PathData, PlacedText, Raster, Segme
 pub use colour::{Colour, ColourMap};
 pub(crate) use svg::{escape, number, svg};
 
-/// Points per millimetre.
 pub(crate) const PT_PER_MM: f64 = 72.0 / 25.4;
 
-/// A position on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
     pub(crate) x: f64,
@@ -34,7 +32,6 @@ pub(crate) struct Rect {
     pub(crate) y1: f64,
 }
 
-/// Space around a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Margins {
     pub(crate) left: f64,
@@ -87,8 +84,7 @@ impl Rect {
     }
 }
 
-/// The part of a segment that lies inside `rect` (Liang and Barsky's parametric
-/// clipping), or nothing.
+/// The part of a segment inside `rect`, by Liang and Barsky's parametric clipping.
 pub(crate) fn clip_segment(rect: &Rect, a: Point, b: Point) -> Option<(Point, Point)> {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
     let edges =

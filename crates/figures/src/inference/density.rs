@@ -9,7 +9,6 @@ fn cell(value: f64, (from, to): (f64, f64), cells: usize) -> Option<usize> {
     (place >= 0.0 && place < cells as f64).then_some(place as usize)
 }
 
-/// Smoothed counts in equal cells.
 pub(super) fn histogram(samples: &[f64], range: (f64, f64), cells: usize) -> Vec<f64> {
     let mut counts = vec![0.0; cells];
     let found = samples.iter().filter_map(|x| cell(*x, range, cells));
@@ -50,8 +49,7 @@ pub(super) fn joint(
     rows
 }
 
-/// The value above which a share of the whole lies: where the densest cells, taken together,
-/// first hold it.
+/// The value above which the densest cells, taken together, hold a share of the whole.
 pub(super) fn level(rows: &[Vec<f64>], share: f64) -> f64 {
     let mut all: Vec<f64> = rows.iter().flatten().copied().collect();
     all.sort_by(|a, b| b.total_cmp(a));

@@ -8,7 +8,6 @@ use crate::draw::{Point, Segment};
 /// Font units per em, the same for all faces.
 pub(crate) const UNITS_PER_EM: f64 = 2048.0;
 
-/// Which of the embedded faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Face {
     Regular,
@@ -26,7 +25,6 @@ impl Face {
         }
     }
 
-    /// Its letter in the table.
     fn letter(self) -> char {
         match self {
             Self::Regular => 'r',
@@ -36,15 +34,12 @@ impl Face {
     }
 }
 
-/// Width of characters in em.
 pub(crate) fn width(face: Face, text: &str) -> f64 {
     text.chars().map(|c| Glyph::new(face, c).advance).sum()
 }
 
-/// One glyph of one face.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Glyph {
-    /// Advance width in em.
     pub(crate) advance: f64,
     outline: &'static str,
 }

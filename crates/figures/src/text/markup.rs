@@ -5,7 +5,6 @@ use std::str::Chars;
 
 use super::font::Face;
 
-/// Vertical place of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Script {
     Base,

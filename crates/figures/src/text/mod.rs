@@ -151,7 +151,6 @@ impl TextLine {
         Self { size: scale * self.size, ..self }
     }
 
-    /// Its characters without any style.
     pub(crate) fn plain(&self) -> &str {
         &self.plain
     }
@@ -161,12 +160,10 @@ impl TextLine {
         (self.top_em + self.bottom_em) * self.size
     }
 
-    /// Height above the baseline.
     pub(crate) fn ascent(&self) -> f64 {
         self.top_em * self.size
     }
 
-    /// Depth below the baseline.
     pub(crate) fn descent(&self) -> f64 {
         self.bottom_em * self.size
     }
@@ -226,8 +223,7 @@ impl TextLine {
         }
     }
 
-    /// Attributes and content of a `text` element: runs follow each other, so that a viewer
-    /// without the font still sets the line as one.
+    /// Attributes and content of a `text` element, runs following each other in one line.
     pub(crate) fn live(&self, anchor: Anchor) -> String {
         let side = match anchor.across {
             share if share < 0.25 => "start",
@@ -280,9 +276,8 @@ impl PlacedText {
     }
 }
 
-/// Breaks at spaces so that no line is wider than `width`; a single word that
-/// is too wide shrinks. At most `max_lines` lines, the last one ending in an
-/// ellipsis if something was left out.
+/// Breaks at spaces so that no line is wider than `width`; a single word that is too wide shrinks.
+/// At most `max_lines` lines, the last one ending in an ellipsis if something was left out.
 pub(crate) fn wrap(markup: &str, size: f64, width: f64, max_lines: usize) -> Vec<TextLine> {
     let mut lines: Vec<String> = Vec::new();
     for word in words(markup) {
