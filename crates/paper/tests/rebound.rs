@@ -26,7 +26,7 @@ fn shot_sweep_and_reproduce_agree_on_the_rebound() {
         accuracy,
         effort: Effort::Checked,
     };
-    let reproduced = gather(&how, &|| {}).unwrap();
+    let reproduced = gather(&how, None, &|| {}).unwrap();
     for case in CASES {
         let experiment = preset(case).unwrap();
         let options = BatchOptions {

@@ -13,7 +13,7 @@ use hertzchain_sim::{Plan, shoot};
 fn gathered(speeds_m_s: &[f64], accuracy: f64, effort: Effort<'_>) -> Evidence {
     let cases = &Cases::new(&Reading::default()).unwrap();
     let how = Gathering { cases, speeds_m_s, accuracy, effort };
-    gather(&how, &|| {}).unwrap()
+    gather(&how, None, &|| {}).unwrap()
 }
 
 #[test]

@@ -207,7 +207,7 @@ fn strikers_that_all_stay_do_not_rebound_differently() {
 fn the_bootstrap_s_error_of_a_mean_is_that_of_theory() {
     let numbers: Vec<f64> =
         (0..20).map(|at| if at % 2 == 0 { 1f64.exp() } else { (-1f64).exp() }).collect();
-    let found = typical(&numbers);
+    let found = typical(numbers.iter().copied());
     assert!(found.value.abs() < 1e-12);
     let expected = 1.96 * (1f64 / 20.0).sqrt();
     // A thousand draws give a standard deviation to 1/√2000; four times that.

@@ -40,15 +40,13 @@ pub struct Claim {
     pub expected: Vec<f64>,
     /// The side of the threshold that the claim needs.
     pub(crate) needs: Needs,
-    /// What the deciding number is compared with, or its largest deviation from
-    /// the expected one.
+    /// What the deciding number is compared with, or its largest deviation from the expected one.
     pub threshold: f64,
     /// A weaker threshold, at which the claim holds in part.
     pub partly: Option<f64>,
     /// What the deciding number must not exceed.
     pub at_most: Option<f64>,
-    /// Unit of the deciding number, the expected ones and all thresholds; empty
-    /// for plain numbers.
+    /// Unit of the deciding number, the expected ones and all thresholds; empty for plain numbers.
     #[serde(default)]
     pub unit: String,
     /// Only speeds from here in m/s.
@@ -87,11 +85,9 @@ pub enum ClaimError {
     Twice(String),
 }
 
-/// Decides a claim on numbers.
 pub(crate) type Predicate<E> = fn(&Claim, &E) -> ClaimFinding;
 
-/// A claim and the code that decides it on numbers of a kind: those of single
-/// shots, if nothing else is said.
+/// A claim and the code that decides it on numbers of a kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Evaluator<E = Evidence> {
     /// The row.
@@ -100,22 +96,19 @@ pub(crate) struct Evaluator<E = Evidence> {
 }
 
 impl<E> Evaluator<E> {
-    /// Decides the claim on numbers.
     pub(crate) fn decide(&self, evidence: &E) -> ClaimFinding {
         (self.predicate)(&self.claim, evidence)
     }
 }
 
 impl Evaluator {
-    /// Whether the claim is about what a shot of a case leaves behind when the
-    /// pulses have passed: the striker or the gaps.
+    /// Whether the claim is about the striker or the gaps after a shot of a case.
     pub(crate) fn needs_end(&self, case: &str, speed_m_s: f64) -> bool {
         predicates::OF_THE_END.contains(&self.claim.predicate.as_str())
             && self.covers(case, speed_m_s)
     }
 
-    /// Whether the claim is about a shot of a case whose gaps close when the pulse
-    /// meets the wall.
+    /// Whether the claim is about a shot of a case whose gaps close at the wall.
     pub(crate) fn needs_closing(&self, case: &str, speed_m_s: f64) -> bool {
         self.claim.predicate == predicates::CLOSING && self.covers(case, speed_m_s)
     }
@@ -135,17 +128,11 @@ struct File {
 static PAPER: &str = include_str!("../../data/claims.toml");
 
 /// The paper's claims, in the order of the data file.
-///
-/// # Errors
-/// When the data file is damaged, which a test rules out.
 pub(crate) fn claims() -> Result<Vec<Evaluator>, ClaimError> {
     read(PAPER, predicates::find)
 }
 
 /// Claims from the text of a data file, with predicates found by their names.
-///
-/// # Errors
-/// A text that is no list of claims, an unknown predicate, a name used twice.
 pub(crate) fn read<E>(
     text: &str,
     find: impl Fn(&str) -> Option<Predicate<E>>,
@@ -165,8 +152,7 @@ pub(crate) fn read<E>(
     Ok(evaluators)
 }
 
-/// Findings of a claim when the printed constants were drawn anew within
-/// half a unit of their last digit.
+/// Findings of a claim on draws of the printed constants within half a unit of their last digit.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rounded {
     /// Number of draws.
@@ -183,7 +169,6 @@ pub(crate) struct Rounded {
 }
 
 impl Rounded {
-    /// From the draws' findings.
     fn of(findings: &[ClaimFinding]) -> Self {
         let count = |verdict| findings.iter().filter(|f| f.leaning == verdict).count();
         let values = findings.iter().map(|f| f.value).filter(|v| v.is_finite());
@@ -221,43 +206,30 @@ pub struct EvaluatedClaim {
 }
 
 impl EvaluatedClaim {
-    /// Whether rounding of the printed constants alone flips the verdict that
-    /// they give.
+    /// Whether rounding of the printed constants alone flips the verdict.
     pub(crate) fn flips_by_rounding(&self) -> bool {
         let rounded = self.rounded.as_ref();
         rounded.is_some_and(|rounded| rounded.flips(self.finding.leaning))
     }
 }
 
-/// Decides all claims on the constants as printed.
-pub(crate) fn evaluate_all<E>(evaluators: &[Evaluator<E>], printed: &E) -> Vec<EvaluatedClaim> {
-    evaluate_all_rounded(evaluators, printed, &[])
-}
-
-/// Decides all claims on the constants as printed, and looks what draws within
-/// their rounding do: a claim of which one draw lies on another side than the
-/// printed constants is not decidable.
-pub(crate) fn evaluate_all_rounded<E>(
+/// Decides all claims on the constants as printed. A claim of which one of the draws within their
+/// rounding lies on another side is not decidable.
+pub(crate) fn evaluate_all<E>(
     evaluators: &[Evaluator<E>],
     printed: &E,
     draws: &[E],
 ) -> Vec<EvaluatedClaim> {
-    let all = evaluators.iter();
-    all.map(|evaluator| decide(evaluator, printed, draws)).collect()
-}
-
-fn decide<E>(evaluator: &Evaluator<E>, printed: &E, draws: &[E]) -> EvaluatedClaim {
-    let finding = evaluator.decide(printed);
-    let drawn: Vec<ClaimFinding> = draws.iter().map(|draw| evaluator.decide(draw)).collect();
-    let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
-    let mut evaluated = EvaluatedClaim {
-        claim: evaluator.claim.clone(),
-        verdict: finding.verdict,
-        finding,
-        rounded,
+    let decide = |evaluator: &Evaluator<E>| {
+        let finding = evaluator.decide(printed);
+        let drawn: Vec<ClaimFinding> = draws.iter().map(|draw| evaluator.decide(draw)).collect();
+        let rounded = (!drawn.is_empty()).then(|| Rounded::of(&drawn));
+        let (claim, verdict) = (evaluator.claim.clone(), finding.verdict);
+        let evaluated = EvaluatedClaim { claim, verdict, finding, rounded };
+        match evaluated.flips_by_rounding() {
+            true => EvaluatedClaim { verdict: ClaimVerdict::NotDecidable, ..evaluated },
+            false => evaluated,
+        }
     };
-    if evaluated.flips_by_rounding() {
-        evaluated.verdict = ClaimVerdict::NotDecidable;
-    }
-    evaluated
+    evaluators.iter().map(decide).collect()
 }

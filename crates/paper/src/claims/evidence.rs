@@ -2,8 +2,7 @@
 
 use hertzchain_measure::signal::{FitError, PowerLaw, power_law};
 
-/// Reproducibility of the striker's speed in the paper: standard deviation
-/// over 20 shots, in m/s.
+/// Standard deviation of the striker's speed over 20 shots of the paper, in m/s.
 pub(crate) const SPEED_SCATTER_M_S: f64 = 0.003;
 
 /// Shots behind each point of the paper.
@@ -22,7 +21,6 @@ impl TofBranch {
     /// Both, the incident first.
     pub(crate) const BOTH: [Self; 2] = [Self::Incident, Self::Reflected];
 
-    /// As written in tables.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Incident => "incident",
@@ -51,16 +49,14 @@ pub struct ShotPoint {
     pub second_returning_peak_n: f64,
     /// Full widths at half maximum of the incoming, wall and returning pulse in s.
     pub widths_s: [f64; 3],
-    /// Velocity of the striker when it first leaves bead 1 in m/s, negative
-    /// away from the chain.
+    /// Velocity of the striker when it first leaves bead 1 in m/s, negative away from the chain.
     pub striker_separation_m_s: f64,
     /// Velocity of the striker at the end of the shot in m/s.
     pub striker_rebound_m_s: f64,
     /// Reflected less incident ToF, both by peaks, in s: of the shot, and with the gaps
     /// behind the pulse closed as it meets the wall.
     pub excess_s: [f64; 2],
-    /// By how much beads 1 and N stand farther apart than at rest when the
-    /// returning pulse has passed, in m: all gaps less all overlaps.
+    /// By how much beads 1 and N are farther apart than at rest, in m, once the pulse has returned.
     pub loosened_m: f64,
     /// Relative accuracy reached of both ToFs.
     pub accuracy_reached: f64,
@@ -103,7 +99,6 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// All speeds in m/s.
     pub(crate) fn speeds_m_s(&self) -> Vec<f64> {
         self.points.iter().map(|p| p.speed_m_s).collect()
     }
@@ -147,8 +142,7 @@ impl Curve {
         slopes.map(|((exponent, _), p)| exponent * p.tof_s(branch) / p.speed_m_s).collect()
     }
 
-    /// Relative accuracy of dT/dv at every speed: that of the local exponent
-    /// and of the ToF.
+    /// Relative accuracy of dT/dv at every speed: of the local exponent and of the ToF.
     pub(crate) fn slope_accuracies(&self, branch: TofBranch) -> Vec<f64> {
         let exponents = self.exponents(branch).into_iter().zip(&self.points);
         exponents.map(|((exponent, off), p)| (off / exponent).abs() + p.accuracy_reached).collect()
@@ -163,17 +157,11 @@ impl Curve {
     }
 
     /// Straight line in log–log through a branch, every speed weighing the same.
-    ///
-    /// # Errors
-    /// Fewer than two speeds, or a ToF that is not a positive number.
     pub(crate) fn power_law(&self, branch: TofBranch) -> Result<PowerLaw, FitError> {
         power_law(&self.speeds_m_s(), &self.tofs_s(branch), None)
     }
 
     /// The same with the weights of the paper's standard errors.
-    ///
-    /// # Errors
-    /// As [`Curve::power_law`].
     pub(crate) fn weighted_power_law(&self, branch: TofBranch) -> Result<PowerLaw, FitError> {
         let sigmas = self.standard_errors_s(branch);
         power_law(&self.speeds_m_s(), &self.tofs_s(branch), Some(&sigmas))
@@ -200,7 +188,6 @@ impl TofRatio {
     }
 }
 
-/// One liquid as printed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PrintedOil {
     /// Name of its case.
@@ -212,13 +199,11 @@ pub(crate) struct PrintedOil {
 }
 
 impl PrintedOil {
-    /// Dynamic viscosity in Pa s.
     pub(crate) fn dynamic_viscosity_pa_s(&self) -> f64 {
         self.kinematic_viscosity_m2_s * self.density_kg_m3
     }
 }
 
-/// What a published figure shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MeasuredKind {
     /// Peak force at the sensor bead over that at the wall.
@@ -249,7 +234,6 @@ pub(crate) struct Digitised {
 pub struct Evidence {
     /// One curve a case.
     pub curves: Vec<Curve>,
-    /// The liquids.
     pub(crate) oils: Vec<PrintedOil>,
     /// Viscosity over Young modulus of the dry balls, η/Y in s.
     pub viscosity_over_modulus_s: f64,
@@ -258,12 +242,10 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// The curve of a case.
     pub(crate) fn curve(&self, case: &str) -> Option<&Curve> {
         self.curves.iter().find(|curve| curve.case == case)
     }
 
-    /// The liquid of a case.
     pub(crate) fn oil(&self, case: &str) -> Option<&PrintedOil> {
         self.oils.iter().find(|oil| oil.case == case)
     }

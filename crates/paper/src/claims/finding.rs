@@ -2,8 +2,7 @@
 
 pub use hertzchain_figures::ClaimVerdict;
 
-/// Share of its comparisons that a claim must meet to hold in part: what more
-/// often fails than holds is not partly true.
+/// Share of its comparisons that a claim must meet to hold in part.
 pub(crate) const IN_PART: f64 = 0.5;
 
 /// A predicate's answer: a number with its accuracy, and what follows from it.
@@ -31,8 +30,7 @@ pub(crate) struct ClaimFinding {
 pub(crate) struct Distance {
     /// The reading's distance from there.
     pub margin: f64,
-    /// Absolute accuracy of the reading: a count whose margins are all larger
-    /// is exact.
+    /// Absolute accuracy of the reading: a count whose margins are all larger is exact.
     pub accuracy: f64,
 }
 
@@ -82,7 +80,6 @@ impl ClaimFinding {
     }
 }
 
-/// Counts single comparisons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Counts {
     yes: usize,
@@ -124,28 +121,13 @@ impl Counts {
 }
 
 /// The comparisons of a claim: how many are met, and the one with the smallest margin.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Comparisons {
     seen: Counts,
     /// By the signs of the margins alone.
     leaning: Counts,
-    margin: f64,
-    value: f64,
-    accuracy: f64,
-    place: String,
-}
-
-impl Default for Comparisons {
-    fn default() -> Self {
-        Self {
-            seen: Counts::default(),
-            leaning: Counts::default(),
-            margin: f64::INFINITY,
-            value: f64::NAN,
-            accuracy: f64::NAN,
-            place: String::new(),
-        }
-    }
+    /// Margin, value, its accuracy and place of the nearest or worst.
+    nearest: Option<(f64, f64, f64, String)>,
 }
 
 impl Comparisons {
@@ -175,24 +157,26 @@ impl Comparisons {
     ) {
         self.seen.margin(margin, margin_accuracy);
         self.leaning.margin(margin, 0.0);
-        if margin < self.margin || margin.is_nan() {
-            (self.margin, self.value, self.accuracy) = (margin, value, accuracy);
-            self.place = place();
+        let least = self.nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.0);
+        if margin < least || margin.is_nan() {
+            self.nearest = Some((margin, value, accuracy, place()));
         }
     }
 
     /// The finding with the number whose margin is smallest.
     pub(crate) fn finding(self) -> ClaimFinding {
         let (met, all) = (self.seen.yes, self.seen.all());
+        let (_, value, accuracy, place) =
+            self.nearest.unwrap_or((f64::NAN, f64::NAN, f64::NAN, String::new()));
         let mut detail = format!("{met} of {all} comparisons met");
-        if !self.place.is_empty() {
-            detail += &format!("; nearest or worst: {}", self.place);
+        if !place.is_empty() {
+            detail += &format!("; nearest or worst: {place}");
         }
         ClaimFinding {
             verdict: self.seen.verdict(),
             leaning: self.leaning.verdict(),
-            value: self.value,
-            accuracy: self.accuracy,
+            value,
+            accuracy,
             expected: None,
             detail,
             nearest_change: None,

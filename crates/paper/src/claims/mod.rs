@@ -1,8 +1,7 @@
 //! The paper's statements, compared with the model's numbers.
 //!
-//! Claims are rows of a data file; each names a predicate, which is code on
-//! plain numbers. No verdict is written down anywhere: change the numbers and
-//! the verdicts follow.
+//! Claims are rows of a data file; each names a predicate, which is code on plain numbers. No
+//! verdict is written down anywhere: change the numbers and the verdicts follow.
 
 mod claim;
 pub(crate) mod evidence;
@@ -16,10 +15,7 @@ pub use self::{
     report::{MEANING, computed_text},
 };
 pub(crate) use self::{
-    claim::{
-        Claim, ClaimError, Evaluator, Needs, Predicate, Rounded, claims, evaluate_all,
-        evaluate_all_rounded, read,
-    },
+    claim::{Claim, ClaimError, Evaluator, Needs, Predicate, Rounded, claims, evaluate_all, read},
     evidence::{
         Curve, Evidence, MeasuredKind, PrintedOil, SHOTS_PER_POINT, SPEED_SCATTER_M_S, ShotPoint,
         TofBranch,

@@ -9,8 +9,7 @@ pub const MEANING: &str = "A claim that fails is a statement that the paper's mo
     this reading, does not give; this does not make the statement wrong, because the paper prints no measured value to \
     compare with, and its authors may have computed with more digits or read their equations otherwise.";
 
-/// All that was found about every claim, as a list in JSON. Numbers that do not
-/// exist are `null`.
+/// All that was found about every claim; numbers that do not exist are `null`.
 pub(crate) fn claims_json(evaluated: &[EvaluatedClaim]) -> Value {
     evaluated.iter().map(row).collect()
 }
@@ -18,14 +17,14 @@ pub(crate) fn claims_json(evaluated: &[EvaluatedClaim]) -> Value {
 fn row(evaluated: &EvaluatedClaim) -> Value {
     let finding = &evaluated.finding;
     let found = json!({
-        "value": number(finding.value),
-        "value_accuracy": number(finding.accuracy),
+        "value": finding.value,
+        "value_accuracy": finding.accuracy,
         "value_expected": finding.expected,
-        "deviation": finding.deviation().map_or(Value::Null, number),
+        "deviation": finding.deviation(),
         "detail": finding.detail,
         "nearest_change": finding.nearest_change.map(|nearest| json!({
-            "margin": number(nearest.margin),
-            "accuracy": number(nearest.accuracy),
+            "margin": nearest.margin,
+            "accuracy": nearest.accuracy,
         })),
         "verdict_as_printed": finding.verdict.name(),
         "verdict": evaluated.verdict.name(),
@@ -47,11 +46,6 @@ fn row(evaluated: &EvaluatedClaim) -> Value {
         row.insert("rounding".to_owned(), rounding);
     }
     Value::Object(row)
-}
-
-/// A number of JSON, which has no NaN.
-fn number(value: f64) -> Value {
-    serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number)
 }
 
 /// The same as a page for people, below a head of its own.
@@ -199,8 +193,7 @@ fn of_unit(number: String, claim: &Claim) -> String {
     }
 }
 
-/// Accuracies below this fraction of their value are rounding of the arithmetic
-/// and not worth their ink.
+/// Accuracies below this fraction of their value are rounding of the arithmetic.
 const ROUNDED: f64 = 1e-13;
 
 /// The accuracy of a finding, `None` where it is rounding of the arithmetic.
@@ -223,13 +216,11 @@ fn value_text(value: f64, accuracy: Option<f64>) -> String {
     }
 }
 
-/// Six significant digits.
 fn digits(value: f64) -> String {
     significant(value, 6)
 }
 
-/// A number with this many significant digits, without an exponent where it
-/// is neither large nor small.
+/// A number with so many significant digits, with an exponent if it is large or small.
 fn significant(value: f64, count: usize) -> String {
     let magnitude = value.abs().log10().floor();
     if value == 0.0 || !value.is_finite() {

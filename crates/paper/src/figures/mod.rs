@@ -55,7 +55,6 @@ fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     values.iter().map(|value| value * factor).collect()
 }
 
-/// Microseconds in a second.
 const US: f64 = 1e6;
 
 /// Names and symbols of the three pulses.

@@ -2,14 +2,13 @@
 //! what the file's `[rig]` describes.
 
 use crate::reproduce::{Cases, ReproduceError};
-use hertzchain_chain::{Bead, Chain, FarEnd, Push, Start};
+use hertzchain_chain::{Bead, Chain, FarEnd, Start};
 use hertzchain_experiment::{Experiment, RigPart, RigPartKind, Units};
 use hertzchain_figures::{Figure, RigDrawing, RigEnd};
 
 /// The paper's Fig. 1: the wet rig with all that stands around the chain.
 pub(super) fn figure(cases: &Cases) -> Result<Figure, ReproduceError> {
-    let missing = || ReproduceError::NoCase("motor".to_owned());
-    let experiment = cases.get("motor").ok_or_else(missing)?;
+    let experiment = cases.get("motor")?;
     let drawing = RigDrawing {
         // The figures that follow have many speeds.
         striker_label: "$v_0$".to_owned(),
@@ -27,9 +26,6 @@ pub(super) fn figure(cases: &Cases) -> Result<Figure, ReproduceError> {
 /// A drawing of what an experiment file describes.
 ///
 /// Where both the model and `[rig]` give a number, the model's is drawn.
-///
-/// # Errors
-/// A chain that can't be set up.
 pub(crate) fn rig(experiment: &Experiment) -> Result<RigDrawing, ReproduceError> {
     let (chain, _warnings) = experiment.chain(None)?;
     let beads = chain.beads.len();
@@ -50,10 +46,16 @@ pub(crate) fn rig(experiment: &Experiment) -> Result<RigDrawing, ReproduceError>
         actuator: named(RigPartKind::Actuator),
         repositioner: named(RigPartKind::Repositioner),
         photogate: named(RigPartKind::Photogate),
-        springs: springs(experiment, &chain.push),
+        springs: {
+            let pushed = Some(chain.push.force_n()).filter(|newtons| *newtons > 0.0);
+            modelled(experiment, RigPartKind::Springs, "push", pushed.map(force))
+        },
         recorder: named(RigPartKind::Recorder),
         stop: named(RigPartKind::Stop),
-        end_structure: end_structure(experiment, &chain.far),
+        end_structure: {
+            let mass = stop_mass(&chain.far).map(kilograms);
+            modelled(experiment, RigPartKind::EndStructure, "stop", mass)
+        },
         bar: named(RigPartKind::Bar),
     })
 }
@@ -84,7 +86,6 @@ fn not_modelled(experiment: &Experiment) -> Result<String, ReproduceError> {
     })
 }
 
-/// A part's name and numbers.
 fn label(experiment: &Experiment, part: &RigPart) -> String {
     let recorded = match (part.bits, part.rate_hz) {
         (Some(bits), Some(rate)) => Some(format!("{bits}-bit ADC at {}", kilohertz(rate))),
@@ -93,7 +94,7 @@ fn label(experiment: &Experiment, part: &RigPart) -> String {
         (None, None) => None,
     };
     let numbers = [
-        part.mass_kg.map(|mass| format!("{}\u{a0}kg", digits(mass))),
+        part.mass_kg.map(kilograms),
         part.length_m.map(|length| format!("{}\u{a0}mm", digits(length * 1e3))),
         part.force_n.map(force),
         recorded.map(|words| unbroken(&words)),
@@ -113,6 +114,10 @@ fn kilohertz(hertz: f64) -> String {
 /// Words that stay on one line.
 fn unbroken(words: &str) -> String {
     words.replace(' ', "\u{a0}")
+}
+
+fn kilograms(mass: f64) -> String {
+    format!("{}\u{a0}kg", digits(mass))
 }
 
 fn force(newtons: f64) -> String {
@@ -167,15 +172,18 @@ fn wet_contacts(experiment: &Experiment, beads: usize) -> Option<(usize, usize)>
     spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-/// The push of the model, or the springs of the rig.
-fn springs(experiment: &Experiment, push: &Push) -> String {
-    let described = part(experiment, RigPartKind::Springs);
-    let acting = Some(push.force_n()).filter(|newtons| *newtons > 0.0);
-    let name = described.map_or("push", |part| &part.name);
-    match (acting, described) {
-        (Some(newtons), _) if experiment.units() == Units::Si => {
-            format!("{name}, {}", force(newtons))
-        }
+/// A part of the rig with the model's number in the place of the rig's, and by this name if the rig
+/// has none.
+fn modelled(
+    experiment: &Experiment,
+    kind: RigPartKind,
+    name: &str,
+    number: Option<String>,
+) -> String {
+    let described = part(experiment, kind);
+    let name = described.map_or(name, |part| &part.name);
+    match (number, described) {
+        (Some(number), _) if experiment.units() == Units::Si => format!("{name}, {number}"),
         (Some(_), _) => name.to_owned(),
         (None, Some(part)) => label(experiment, part),
         (None, None) => String::new(),
@@ -187,20 +195,6 @@ fn far_end(far: &FarEnd) -> RigEnd {
         FarEnd::HalfBead { .. } | FarEnd::Stop { .. } => RigEnd::HalfBead,
         FarEnd::Plane { .. } | FarEnd::PlaneStop { .. } => RigEnd::Plane,
         FarEnd::Periodic { .. } | FarEnd::Free => RigEnd::Open,
-    }
-}
-
-/// The stop of the model, or the structure of the rig.
-fn end_structure(experiment: &Experiment, far: &FarEnd) -> String {
-    let described = part(experiment, RigPartKind::EndStructure);
-    let name = described.map_or("stop", |part| &part.name);
-    match (stop_mass(far), described) {
-        (Some(mass_kg), _) if experiment.units() == Units::Si => {
-            format!("{name}, {}\u{a0}kg", digits(mass_kg))
-        }
-        (Some(_), _) => name.to_owned(),
-        (None, Some(part)) => label(experiment, part),
-        (None, None) => String::new(),
     }
 }
 

@@ -118,7 +118,6 @@ fn columns(scan: &ReadingScan) -> Vec<ReadingColumn<'_>> {
     columns
 }
 
-/// A claim's name in words.
 fn words(id: &str) -> String {
     let word = |word: &str| match word {
         "tof" => "ToF".to_owned(),
@@ -138,7 +137,6 @@ pub fn rig_figures(evidence: &RigEvidence, claims: &RigClaims) -> Vec<(&'static 
     ]
 }
 
-/// Claims against rigs.
 fn verdicts(claims: &RigClaims) -> Figure {
     let cell = |claim: usize| {
         let verdict = move |all: &[EvaluatedClaim]| all.get(claim).map(|own| own.verdict);
@@ -157,8 +155,7 @@ fn verdicts(claims: &RigClaims) -> Figure {
     matrix.figure().title("What the paper says of its rig, on virtual ones")
 }
 
-/// Spreads of times of flight against each factor, the others as usual; beside
-/// them what the striker's own irregularity adds.
+/// Spreads against each factor, the others as usual, beside what the striker's scatter adds.
 fn spreads(evidence: &RigEvidence) -> Figure {
     let kinds: [(&str, Colour, Marker, Of); 3] = [
         ("reflected, with taps", Colour::GREEN, Marker::OpenSquare, |at| {
@@ -173,8 +170,7 @@ fn spreads(evidence: &RigEvidence) -> Figure {
     ];
     let added_ns = evidence.rigs.first().map_or(f64::NAN, |usual| {
         let scatter = usual.with_scatter_s(TofBranch::Incident);
-        let added_s: Vec<f64> = scatter.map(|(_, scatter_s)| scatter_s).collect();
-        1e9 * typical(&added_s).value.exp()
+        1e9 * typical(scatter.map(|(_, scatter_s)| scatter_s)).value.exp()
     });
     let mut figure = Figure::double_column(120.0).columns(2).letters();
     for (at, factor) in FACTORS.iter().enumerate() {
@@ -204,7 +200,6 @@ fn spreads(evidence: &RigEvidence) -> Figure {
 /// Range of spreads in ns, the same in all panels.
 const SPREADS_NS: (f64, f64) = (50.0, 5e5);
 
-/// What a series has.
 type Of = fn(&SpeedSeries) -> f64;
 
 /// Rigs that differ from the usual one in a factor at most, by its value.
@@ -225,7 +220,7 @@ fn one_at_a_time(evidence: &RigEvidence, factor: usize) -> Vec<(f64, &Observed)>
 fn spread(rigs: &[(f64, &Observed)], si: f64, name: &str, of: Of) -> Series {
     let values: Vec<f64> = rigs.iter().map(|(value, _)| value / si).collect();
     let found = rigs.iter().map(|(_, observed)| {
-        let log = typical(&observed.speeds.iter().map(of).collect::<Vec<f64>>());
+        let log = typical(observed.speeds.iter().map(of));
         let ns = 1e9 * log.value.exp();
         (ns, ns * -(-log.error).exp_m1(), ns * log.error.exp_m1())
     });
@@ -234,7 +229,6 @@ fn spread(rigs: &[(f64, &Observed)], si: f64, name: &str, of: Of) -> Series {
     Series::points(name, &values, &part(|f| f.0)).y_errors(&part(|f| f.1), &part(|f| f.2))
 }
 
-/// Rebound over speed against speed.
 fn rebounds(evidence: &RigEvidence) -> Figure {
     let mut chart = Chart::new("Striker speed $v_0$ (m/s)", "Rebound / $v_0$").x_log();
     for observed in shown(evidence) {
@@ -256,9 +250,8 @@ fn shown(evidence: &RigEvidence) -> Vec<&Observed> {
     rigs.filter(|observed| same(&observed.rig)).collect()
 }
 
-/// Gaps after the fastest shots and after the taps that follow, contact by
-/// contact, on the three rigs that are left loosest, no two of the same friction
-/// and push.
+/// Gaps after the fastest shots and after the taps that follow, contact by contact, on the three
+/// rigs that are left loosest, no two of the same friction and push.
 fn gaps(evidence: &RigEvidence) -> Figure {
     let mut rigs: Vec<&Observed> = evidence.rigs.iter().collect();
     rigs.sort_by(|one, other| left_m(other).total_cmp(&left_m(one)));

@@ -6,8 +6,7 @@ use hertzchain_experiment::Reading;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-/// Marks a claim whose verdict in the default reading rounding of the printed
-/// constants alone flips.
+/// Marks a claim whose verdict in the default reading rounding alone flips.
 pub(crate) const FLIPPED: &str = "†";
 
 /// The same in the closest reading.
@@ -72,7 +71,6 @@ fn table_row(page: &mut String, scan: &ReadingScan, row: &ReadingRow) {
     let _ = writeln!(page, "| {} | {} | {gained} | {lost} |", row.reading, row.score());
 }
 
-/// Names of claims, by index.
 fn names(scan: &ReadingScan, claims: &[usize]) -> String {
     let names = claims.iter().filter_map(|claim| name(scan, *claim));
     names.collect::<Vec<_>>().join(", ")
@@ -164,8 +162,7 @@ fn closest(page: &mut String, scan: &ReadingScan) {
     let _ = writeln!(page, "- Still failing: {}.", or_none(names(scan, &unmet)));
 }
 
-/// ClaimVerdict and value of every claim in the default and the closest reading:
-/// what changes within a verdict shows too.
+/// Verdict and value of every claim in the default and the closest reading.
 fn side_by_side(page: &mut String, scan: &ReadingScan) {
     page.push_str("\n| claim | default | value | closest | value |\n|---|---|---|---|---|\n");
     let closest = scan.closest();

@@ -29,8 +29,7 @@ static OF_OIL: [&str; 7] = [
     "liquid.density",
 ];
 
-/// How far the Poisson ratio 0.3 of the dry balls may be off: the paper prints
-/// one digit where handbooks have two.
+/// How far the Poisson ratio 0.3 of the dry balls may be off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum DryPoisson {
     /// The handbooks' 0.30, within 0.005.
@@ -59,9 +58,6 @@ impl Draw {
     }
 
     /// The experiment of a case with the constants drawn.
-    ///
-    /// # Errors
-    /// A constant that leaves what a chain can have.
     pub(crate) fn of(&self, case: &str, experiment: &Experiment) -> Result<Experiment, PathError> {
         let numbers = experiment.numbers();
         let drawn = numbers.iter().filter_map(|named| {
@@ -92,9 +88,6 @@ const ACCURACIES: [f64; 2] = [1e-6, 1e-7];
 
 /// Draws the printed constants anew and shoots, in a reading, all cases at all speeds of the tables
 /// for each draw, as accurately as the claims take to be decided on it.
-///
-/// # Errors
-/// The first shot that can't be computed.
 pub(crate) fn rounded_evidence(
     evaluators: &[Evaluator],
     reading: &Reading,
@@ -109,7 +102,7 @@ pub(crate) fn rounded_evidence(
         let evidence = sharpened(evaluators, &ACCURACIES, &|accuracy| {
             let effort = Effort::Lean(evaluators);
             let how = Gathering { cases: &drawn, speeds_m_s: &SPEEDS_M_S, accuracy, effort };
-            gather(&how, &|| {})
+            gather(&how, None, &|| {})
         });
         done();
         evidence
@@ -117,8 +110,7 @@ pub(crate) fn rounded_evidence(
     (0..draws).map(one).collect()
 }
 
-/// Evidence at the first of some accuracies at which no claim is left open, or
-/// at the last.
+/// Evidence at the first accuracy that leaves no claim open, or at the last.
 pub(super) fn sharpened(
     evaluators: &[Evaluator],
     accuracies: &[f64],

@@ -3,7 +3,7 @@
 use super::rounding::sharpened;
 use crate::claims::{Claim, ClaimVerdict, Evaluator, claims};
 use crate::reproduce::{
-    Cases, Effort, Gathering, ReproduceError, ReproduceProgress, ShotCache, gather_cached,
+    Cases, Effort, Gathering, ReproduceError, ReproduceProgress, ShotCache, gather,
 };
 use hertzchain_experiment::Reading;
 use std::time::Instant;
@@ -82,13 +82,9 @@ pub struct ReadingScan {
     pub flipped_in_closest: Vec<usize>,
 }
 
-/// Tries readings: one switch at a time, then the full product of those that
-/// move a verdict as far as `most` readings go, then from the best of these
-/// one switch at a time for as long as that improves it. A reading that leaves a
-/// claim open is computed again at a tenth of the accuracy.
-///
-/// # Errors
-/// The first shot that can't be computed.
+/// Tries readings: one switch at a time, then the full product of those that move a verdict as far
+/// as `most` readings go, then from the best of these one switch at a time for as long as that
+/// improves it. A reading that leaves a claim open is computed again at a tenth of the accuracy.
 pub(crate) fn scan(
     most: usize,
     speeds_m_s: &[f64],
@@ -110,7 +106,10 @@ pub(crate) fn scan(
     let (product_of, left_out) = factors(&default, &single, most);
     let pace_s = start.elapsed().as_secs_f64() / (single.len() + 1) as f64;
     let readings = product(&product_of);
-    progress.note(&forecast(readings.len(), pace_s));
+    // At most, as many of its readings share shots.
+    let (count, minutes) = (readings.len(), (pace_s * readings.len() as f64 / 60.0).ceil());
+    progress
+        .note(&format!("{count} readings to combine: at the pace so far {minutes} min or less"));
     progress.begin("readings, product", readings.len() as u64);
     let product = scanner.rows(&readings)?;
     let start = best(single.iter().chain(&product).chain([&default])).clone();
@@ -128,13 +127,6 @@ pub(crate) fn scan(
     })
 }
 
-/// What the product will cost at most, at the pace of the readings before it:
-/// many of its readings share shots.
-fn forecast(readings: usize, pace_s: f64) -> String {
-    let minutes = (pace_s * readings as f64 / 60.0).ceil();
-    format!("{readings} readings to combine: at the pace so far {minutes} min or less")
-}
-
 impl ReadingScan {
     /// Every reading that was tried, the default first.
     pub fn rows(&self) -> impl Iterator<Item = &ReadingRow> {
@@ -142,14 +134,12 @@ impl ReadingScan {
         std::iter::once(&self.default).chain(rest)
     }
 
-    /// The reading that meets most claims; of equals, the one with fewest
-    /// changes.
+    /// The reading that meets most claims; of equals, the one with fewest changes.
     pub fn closest(&self) -> &ReadingRow {
         best(self.rows())
     }
 
-    /// Readings of the full product, of which [`ReadingScan::product`] has those that
-    /// there was room for.
+    /// Readings of the full product, those without room among them.
     pub(crate) fn full_product_size(&self) -> usize {
         let options = self.left_out.iter().map(|(_, options)| options.len());
         self.product.len() * options.product::<usize>()
@@ -168,8 +158,7 @@ impl ReadingScan {
         found
     }
 
-    /// For each claim that the default reading does not fully meet, the best
-    /// reading that meets it better.
+    /// For each claim that the default does not fully meet, the best reading that meets it better.
     pub(crate) fn prices(&self) -> Vec<Price> {
         let open = self.default.verdicts.iter().enumerate();
         let open = open.filter(|(_, verdict)| **verdict != ClaimVerdict::Holds);
@@ -245,7 +234,6 @@ fn factors(
     (chosen, left_out)
 }
 
-/// All combinations of the options.
 fn product(factors: &[SwitchOptions]) -> Vec<Reading> {
     let start = vec![Reading::default()];
     factors.iter().fold(start, |readings, (switch, options)| {
@@ -272,7 +260,7 @@ impl Scanner<'_> {
         let evidence = sharpened(&self.evaluators, &accuracies, &|accuracy| {
             let (speeds_m_s, effort) = (self.speeds_m_s, Effort::Lean(&self.evaluators));
             let how = Gathering { cases: &cases, speeds_m_s, accuracy, effort };
-            gather_cached(&how, &self.cache)
+            gather(&how, Some(&self.cache), &|| {})
         })?;
         let findings = self.evaluators.iter().map(|evaluator| evaluator.decide(&evidence));
         let (verdicts, values) = findings.map(|f| (f.verdict, f.value)).unzip();

@@ -15,7 +15,6 @@ pub(crate) const SPEEDS_M_S: [f64; 31] = [
 /// The paper's chains, in the order of the tables.
 pub const CASES: [&str; 6] = ["hertz", "hertz-viscoelastic", "dry", "pump", "gear", "motor"];
 
-/// The wet ones.
 pub(crate) const OILS: [&str; 3] = ["pump", "gear", "motor"];
 
 /// The paper's chains in one reading.
@@ -23,10 +22,6 @@ pub(crate) const OILS: [&str; 3] = ["pump", "gear", "motor"];
 pub(crate) struct Cases(Vec<(&'static str, Experiment)>);
 
 impl Cases {
-    /// All of them.
-    ///
-    /// # Errors
-    /// A reading that leaves something outside a chain.
     pub(crate) fn new(reading: &Reading) -> Result<Self, ReproduceError> {
         let open = |case| {
             let experiment = preset(case).map_err(ReproduceError::Preset)?;
@@ -50,16 +45,15 @@ impl Cases {
         &self.0
     }
 
-    /// The experiment of a case.
-    pub(crate) fn get(&self, case: &str) -> Option<&Experiment> {
+    pub(crate) fn get(&self, case: &str) -> Result<&Experiment, ReproduceError> {
         let found = self.0.iter().find(|(name, _)| *name == case);
+        let found = found.ok_or_else(|| ReproduceError::NoCase(case.to_owned()));
         found.map(|(_, experiment)| experiment)
     }
 
-    /// The liquids as printed.
     pub(crate) fn oils(&self) -> Vec<PrintedOil> {
         let oil = |case: &&str| {
-            let liquid = self.get(case)?.liquid()?;
+            let liquid = self.get(case).ok()?.liquid()?;
             Some(PrintedOil {
                 case: (*case).to_owned(),
                 kinematic_viscosity_m2_s: liquid.kinematic_viscosity_m2_s?,

@@ -12,8 +12,7 @@ use rayon::prelude::*;
 const SIGNAL_SHOTS: [(&str, f64); 4] =
     [("dry", 0.1368), ("pump", 1.152), ("gear", 0.1396), ("motor", 0.3993)];
 
-/// One dry and one wet shot that are followed bead by bead, at the same
-/// speed: that of the split pulse of the paper's Fig. 2 (d).
+/// Shots that are followed bead by bead, at the speed of the paper's split pulse, Fig. 2 (d).
 const FILM_SHOTS: [(&str, f64); 2] = [("dry", 0.3993), ("motor", 0.3993)];
 
 /// The paper's channel, bead sensor plus wall, of one shot.
@@ -56,62 +55,43 @@ const FRAME_S: f64 = 2e-6;
 const FILM_ACCURACY: f64 = 1e-9;
 
 /// Computes the signals of the paper's Fig. 2.
-///
-/// # Errors
-/// The first shot that can't be computed.
 pub(super) fn signals(cases: &Cases, accuracy: f64) -> Result<Vec<SignalShot>, ReproduceError> {
-    SIGNAL_SHOTS.par_iter().map(|(case, speed)| signal(cases, case, *speed, accuracy)).collect()
-}
-
-fn signal(
-    cases: &Cases,
-    case: &str,
-    speed_m_s: f64,
-    accuracy: f64,
-) -> Result<SignalShot, ReproduceError> {
-    let experiment = cases.get(case).ok_or_else(|| no_case(case))?;
-    let plan = plan(experiment, speed_m_s, accuracy)?.for_flights();
-    let channel = Sensor::BeadPlusWall(plan.sensor_bead);
-    let shot = shoot(&plan.watching(vec![channel], Some(SIGNAL_SAMPLE_S)))
-        .map_err(|error| failed(case, speed_m_s, error))?;
-    let trace = shot.trace.unwrap_or_default();
-    let peaks = shot.passage.map_or(Vec::new(), |p| {
-        let all = [Some(p.incident), Some(p.wall), p.reflected];
-        all.into_iter().flatten().map(|peak| (peak.time_s, peak.value)).collect()
-    });
-    Ok(SignalShot {
-        case: case.to_owned(),
-        speed_m_s,
-        time_s: trace.time_s,
-        channel_n: trace.columns.into_iter().next().unwrap_or_default(),
-        peaks,
-    })
+    let signal = |&(case, speed_m_s): &(&str, f64)| {
+        let plan = plan(cases.get(case)?, speed_m_s, accuracy)?.for_flights();
+        let channel = Sensor::BeadPlusWall(plan.sensor_bead);
+        let shot = shoot(&plan.watching(vec![channel], Some(SIGNAL_SAMPLE_S)))
+            .map_err(|error| failed(case, speed_m_s, error))?;
+        let trace = shot.trace.unwrap_or_default();
+        let peaks = shot.passage.map_or(Vec::new(), |p| {
+            let all = [Some(p.incident), Some(p.wall), p.reflected];
+            all.into_iter().flatten().map(|peak| (peak.time_s, peak.value)).collect()
+        });
+        Ok(SignalShot {
+            case: case.to_owned(),
+            speed_m_s,
+            time_s: trace.time_s,
+            channel_n: trace.columns.into_iter().next().unwrap_or_default(),
+            peaks,
+        })
+    };
+    SIGNAL_SHOTS.par_iter().map(signal).collect()
 }
 
 /// Computes the shots that are followed bead by bead.
-///
-/// # Errors
-/// The first shot that can't be computed.
 pub(super) fn films(cases: &Cases) -> Result<Vec<Film>, ReproduceError> {
-    FILM_SHOTS.par_iter().map(|(case, speed)| film(cases, case, *speed)).collect()
-}
-
-fn film(cases: &Cases, case: &str, speed_m_s: f64) -> Result<Film, ReproduceError> {
-    let experiment = cases.get(case).ok_or_else(|| no_case(case))?;
-    let plan = plan(experiment, speed_m_s, FILM_ACCURACY)?.for_flights();
-    let bodies = (0..=plan.chain.beads.len()).map(Sensor::Velocity).collect();
-    let shot = shoot(&plan.with_budget().watching(bodies, Some(FRAME_S)))
-        .map_err(|error| failed(case, speed_m_s, error))?;
-    let trace = shot.trace.unwrap_or_default();
-    Ok(Film {
-        case: case.to_owned(),
-        speed_m_s,
-        time_s: trace.time_s,
-        velocity_m_s: trace.columns,
-        budgets: trace.budgets,
-    })
-}
-
-fn no_case(case: &str) -> ReproduceError {
-    ReproduceError::NoCase(case.to_owned())
+    let film = |&(case, speed_m_s): &(&str, f64)| {
+        let plan = plan(cases.get(case)?, speed_m_s, FILM_ACCURACY)?.for_flights();
+        let bodies = (0..=plan.chain.beads.len()).map(Sensor::Velocity).collect();
+        let shot = shoot(&plan.with_budget().watching(bodies, Some(FRAME_S)))
+            .map_err(|error| failed(case, speed_m_s, error))?;
+        let trace = shot.trace.unwrap_or_default();
+        Ok(Film {
+            case: case.to_owned(),
+            speed_m_s,
+            time_s: trace.time_s,
+            velocity_m_s: trace.columns,
+            budgets: trace.budgets,
+        })
+    };
+    FILM_SHOTS.par_iter().map(film).collect()
 }

@@ -6,11 +6,12 @@ use super::point::{checked, excess_s, read_off_all};
 use crate::claims::{Curve, Evaluator, Evidence, ShotPoint};
 use hertzchain_chain::Sensor;
 use hertzchain_experiment::Experiment;
-use hertzchain_sim::{Control, InstructionSet, Pick, Plan, Shot, StudyError, run_plans, shoot};
+use hertzchain_sim::{
+    Control, Fingerprint, InstructionSet, Pick, Plan, Shot, StudyError, run_plans, shoot,
+};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{PoisonError, RwLock};
 
 /// How the paper's chains are shot.
 #[derive(Clone, Debug)]
@@ -28,38 +29,16 @@ pub(crate) struct Gathering<'a> {
 /// How much is known of every shot.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Effort<'a> {
-    /// All numbers, each with the accuracy it reached: every shot is computed again
-    /// at a tenth of the tolerance.
+    /// All numbers, each with the accuracy it reached: shots run again at a tenth of the tolerance.
     Checked,
     /// Times, peaks and widths by the ensemble loop; the striker, the gaps and the
     /// way back without them only of the shots in which one of these claims asks for them.
     Lean(&'a [Evaluator]),
 }
 
-/// Shoots all cases at all speeds, on all cores; `done` is called after each
-/// shot, from any thread. The result does not depend on their number.
-///
-/// # Errors
-/// The first shot that can't be computed, in the order of the tables.
+/// Shoots all cases at all speeds that the cache, if there is one, has not, on all cores; `done` is
+/// called after each shot, from any thread. The result does not depend on their number.
 pub(crate) fn gather(
-    how: &Gathering<'_>,
-    done: &(dyn Fn() + Sync),
-) -> Result<Evidence, ReproduceError> {
-    gathered(how, None, done)
-}
-
-/// The same with a cache of shots.
-///
-/// # Errors
-/// As [`gather`].
-pub(crate) fn gather_cached(
-    how: &Gathering<'_>,
-    cache: &ShotCache,
-) -> Result<Evidence, ReproduceError> {
-    gathered(how, Some(cache), &|| {})
-}
-
-fn gathered(
     how: &Gathering<'_>,
     cache: Option<&ShotCache>,
     done: &(dyn Fn() + Sync),
@@ -69,23 +48,19 @@ fn gathered(
     let jobs = all.flat_map(|case| how.speeds_m_s.iter().map(move |speed| (case, *speed)));
     let jobs: Vec<_> = jobs.collect();
     let target = |&((case, experiment), speed): &(&(&'static str, Experiment), f64)| {
-        let target = ShotTarget::new(case, experiment, speed, how)?;
-        // What is cached serves every pick.
-        Ok::<_, ReproduceError>(match cache {
-            Some(_) => target.comparing_picks(),
-            None => target,
-        })
+        let mut target = ShotTarget::new(case, experiment, speed, how)?;
+        if cache.is_some() {
+            // What is cached serves every pick.
+            target.plan = target.plan.comparing_picks();
+        }
+        Ok::<_, ReproduceError>(target)
     };
     let targets: Vec<ShotTarget> = jobs.par_iter().map(target).collect::<Result<_, _>>()?;
     let points = shot_at(&targets, how.effort, cache, done)?;
-    let curves = points.chunks(how.speeds_m_s.len().max(1));
-    let curves = cases
-        .all()
-        .iter()
-        .zip(curves)
-        .map(|((case, _), points)| Curve { case: (*case).to_owned(), points: points.to_vec() });
+    let points = points.chunks(how.speeds_m_s.len().max(1)).map(<[ShotPoint]>::to_vec);
+    let curves = cases.all().iter().zip(points);
     Ok(Evidence {
-        curves: curves.collect(),
+        curves: curves.map(|((case, _), points)| Curve { case: (*case).into(), points }).collect(),
         oils: cases.oils(),
         viscosity_over_modulus_s: viscosity_over_modulus(cases)?,
         digitised: Vec::new(),
@@ -94,15 +69,11 @@ fn gathered(
 
 /// η/Y of the dry balls in s.
 fn viscosity_over_modulus(cases: &Cases) -> Result<f64, ReproduceError> {
-    let Some(dry) = cases.get("dry") else {
-        return Ok(f64::NAN);
-    };
-    let (chain, _) = dry.chain(Some(1.0))?;
+    let (chain, _) = cases.get("dry")?.chain(Some(1.0))?;
     let material = chain.beads.first().map(|bead| bead.material);
     Ok(material.map_or(f64::NAN, |m| m.shear_viscosity_pa_s / m.young_modulus_pa))
 }
 
-/// A shot to be computed.
 struct ShotTarget {
     case: &'static str,
     speed_m_s: f64,
@@ -140,10 +111,6 @@ impl ShotTarget {
         Ok(Self { case, speed_m_s, pick: plan.pick, closing, plan })
     }
 
-    fn comparing_picks(self) -> Self {
-        Self { plan: self.plan.comparing_picks(), ..self }
-    }
-
     /// The point of the target's own pick.
     fn own(&self, mut points: Vec<ShotPoint>) -> Option<ShotPoint> {
         let at = self.plan.picks().position(|pick| pick == self.pick)?;
@@ -173,7 +140,9 @@ fn shot_at(
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<ShotPoint>, ReproduceError> {
     let known = |target: &ShotTarget| {
-        let points = cache.and_then(|cache| cache.restored(&target.plan))?;
+        // A panic elsewhere leaves whole points behind.
+        let stored = cache?.read().unwrap_or_else(PoisonError::into_inner);
+        let points = stored.get(&key(&target.plan)).cloned()?;
         // Two cases may share a plan of which only one asks for the way back without gaps.
         let has_all = !target.closing || points.iter().all(|point| !point.excess_s[1].is_nan());
         has_all.then_some(points)
@@ -188,7 +157,8 @@ fn shot_at(
     };
     for ((at, target), fresh) in new.into_iter().zip(fresh) {
         if let Some(cache) = cache {
-            cache.store(&target.plan, &fresh);
+            let mut stored = cache.write().unwrap_or_else(PoisonError::into_inner);
+            stored.insert(key(&target.plan), fresh.clone());
         }
         points[at] = Some(fresh);
     }
@@ -208,8 +178,7 @@ fn checked_points(
     targets.par_iter().map(one).collect()
 }
 
-/// Shots that are followed to their end run in the wave loop, the others side by
-/// side in the ensemble loop.
+/// Shots followed to their end run in the wave loop, others in the ensemble loop.
 fn lean_points(
     targets: &[(usize, &ShotTarget)],
     done: &(dyn Fn() + Sync),
@@ -244,38 +213,10 @@ pub(super) fn plan(
     Ok(plan.with_accuracy(accuracy))
 }
 
-/// Cache of shots by everything that decides them, each as every pick times it:
-/// many readings leave many of the paper's chains as they are.
-#[derive(Debug, Default)]
-pub(crate) struct ShotCache(Mutex<HashMap<[u64; 2], Vec<ShotPoint>>>);
+/// Points of shots by the fingerprint of their plan, one point a pick: many readings leave many of
+/// the paper's chains as they are.
+pub(crate) type ShotCache = RwLock<HashMap<Fingerprint, Vec<ShotPoint>>>;
 
-impl ShotCache {
-    /// The stored points of a plan, one a pick.
-    fn restored(&self, plan: &Plan) -> Option<Vec<ShotPoint>> {
-        let key = key(plan);
-        self.lock().get(&key).cloned()
-    }
-
-    /// Stores the points of a plan.
-    fn store(&self, plan: &Plan, points: &[ShotPoint]) {
-        let key = key(plan);
-        self.lock().insert(key, points.to_vec());
-    }
-
-    fn lock(&self) -> MutexGuard<'_, HashMap<[u64; 2], Vec<ShotPoint>>> {
-        // A panic elsewhere leaves whole points behind.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// Two independent hashes of a plan as written out, numbers to the last bit:
-/// among the thousands of plans of a scan no two share both.
-fn key(plan: &Plan) -> [u64; 2] {
-    let text = format!("{plan:?}");
-    [0_u8, 1].map(|salt| {
-        let mut hasher = DefaultHasher::new();
-        salt.hash(&mut hasher);
-        text.hash(&mut hasher);
-        hasher.finish()
-    })
+fn key(plan: &Plan) -> Fingerprint {
+    Fingerprint::of("shot of a scan", plan)
 }

@@ -16,6 +16,6 @@ pub use self::{
 pub(crate) use self::{
     cases::{Cases, OILS, SPEEDS_M_S},
     films::{Film, SignalShot},
-    gather::{Effort, Gathering, ShotCache, gather, gather_cached},
+    gather::{Effort, Gathering, ShotCache, gather},
     provenance::Provenance,
 };

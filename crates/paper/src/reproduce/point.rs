@@ -8,10 +8,9 @@ use hertzchain_chain::{Sensor, System};
 use hertzchain_sim::accuracy::{adaptive, reached, tolerance};
 use hertzchain_sim::{Flight, Plan, Shot, StudyError, shoot};
 
-/// How many times as wrong as the accuracy asked the numbers of a shot are that was
-/// not computed again, at most: measured on the paper's chains and speeds at 1e-5
-/// to 1e-7 and rounded up. Times are twice as wrong behind a strong loss, where a
-/// loosened chain amplifies errors.
+/// How many times as wrong as the accuracy asked the numbers of a shot are that was not computed
+/// again, at most: measured on the paper's chains and speeds at 1e-5 to 1e-7 and rounded up. Times
+/// are twice as wrong behind a strong loss, where a loosened chain amplifies errors.
 mod unchecked {
     /// ToFs, relative.
     pub(super) const TOF: f64 = 4.0;
@@ -21,8 +20,7 @@ mod unchecked {
     pub(super) const SECOND_PEAK: f64 = 200.0;
     /// Widths, relative: that of a split pulse ends at a flat shoulder.
     pub(super) const WIDTH: f64 = 300.0;
-    /// Velocities of the striker, which gather the errors of all steps, in its
-    /// own speed.
+    /// Velocities of the striker, in its own speed: they gather the errors of all steps.
     pub(super) const STRIKER: f64 = 30.0;
     /// Loosening, relative.
     pub(super) const LOOSENED: f64 = 200.0;
@@ -55,8 +53,7 @@ pub(super) fn checked(plan: &Plan, speed_m_s: f64) -> Result<ShotPoint, StudyErr
     }
 }
 
-/// A point whose accuracies follow from what a finer computation changes and from
-/// the tolerance of a step.
+/// A point whose accuracies follow from a finer computation and the tolerance of a step.
 fn evaluated(point: ShotPoint, finer: &ShotPoint, tolerance: f64) -> ShotPoint {
     let largest = |number: &dyn Fn(&ShotPoint) -> Vec<f64>, relative: bool| {
         let pairs = number(&point).into_iter().zip(number(finer));
@@ -86,27 +83,21 @@ fn evaluated(point: ShotPoint, finer: &ShotPoint, tolerance: f64) -> ShotPoint {
 pub(super) fn read_off_all(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Vec<ShotPoint> {
     let point = read_off(plan, speed_m_s, shot);
     let flights = std::iter::once(&shot.flight).chain(&shot.compared);
-    let timed = |flight: &Option<Flight>| point.clone().timed(*flight);
+    let timed = |flight: &Option<Flight>| ShotPoint {
+        tof_incident_s: flight.map_or(f64::NAN, |f| f.incident_s),
+        tof_reflected_s: flight.and_then(|f| f.reflected_s).unwrap_or(f64::NAN),
+        ..point.clone()
+    };
     flights.map(timed).collect()
 }
 
-impl ShotPoint {
-    fn timed(self, flight: Option<Flight>) -> Self {
-        Self {
-            tof_incident_s: flight.map_or(f64::NAN, |f| f.incident_s),
-            tof_reflected_s: flight.and_then(|f| f.reflected_s).unwrap_or(f64::NAN),
-            ..self
-        }
-    }
-}
-
-/// The numbers of a shot.
 pub(super) fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> ShotPoint {
     let passage = shot.passage.as_ref().ok();
     let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let rebound = shot.rebound;
     let returning_peak_n = or_nan(passage.and_then(|p| p.reflected).map(|peak| peak.value));
     let loosened_m = or_nan(loosened(shot));
+    let both_ways_s = passage.and_then(|p| Some(p.tof_incident_s() + p.tof_reflected_s()?));
     let asked = shot.accuracy_asked;
     ShotPoint {
         speed_m_s,
@@ -130,14 +121,9 @@ pub(super) fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> ShotPoint {
         second_peak_accuracy_n: unchecked::SECOND_PEAK * asked * returning_peak_n,
         width_accuracy: unchecked::WIDTH * asked,
         striker_accuracy_m_s: unchecked::STRIKER * asked * speed_m_s,
-        excess_accuracy_s: unchecked::TOF * asked * or_nan(passage.and_then(both_ways_s)),
+        excess_accuracy_s: unchecked::TOF * asked * or_nan(both_ways_s),
         loosened_accuracy_m: unchecked::LOOSENED * asked * loosened_m.abs(),
     }
-}
-
-/// Sum of both times of flight in s.
-fn both_ways_s(passage: &Passage) -> Option<f64> {
-    Some(passage.tof_incident_s() + passage.tof_reflected_s()?)
 }
 
 /// Reflected less incident ToF by peaks, in s: of a shot, and of the same with the
@@ -174,8 +160,7 @@ fn second_return(plan: &Plan, passage: &Passage) -> Option<f64> {
     Some(others.map(|maximum| maximum.value).fold(0.0, f64::max))
 }
 
-/// By how much beads 1 and N stand farther apart than at rest, in m, at the end
-/// of the time in which the returning pulse is looked for.
+/// By how much beads 1 and N are farther apart than at rest, in m, once the pulse has returned.
 fn loosened(shot: &Shot) -> Option<f64> {
     let (trace, passage) = (shot.trace.as_ref()?, shot.passage.as_ref().ok()?);
     let until = passage.wall.time_s + 3.0 * passage.tof_incident_s();
@@ -184,8 +169,7 @@ fn loosened(shot: &Shot) -> Option<f64> {
     Some(at(1)? - at(0)?)
 }
 
-/// Reflected ToF in s, by peaks, of a plan's shot whose state is changed at the
-/// wall's peak; `None` when no pulse comes back.
+/// Reflected ToF in s, by peaks, of a shot whose state is changed at the wall's peak.
 fn reflected_s(
     plan: &Plan,
     passage: &Passage,

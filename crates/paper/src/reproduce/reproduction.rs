@@ -7,7 +7,7 @@ use super::provenance::machine;
 use super::tables::{oils_csv, power_law_residuals_csv, power_laws_csv, ratios_csv, tof_csv};
 use super::{Provenance, ReproduceError, ReproduceProgress};
 use crate::claims::{
-    EvaluatedClaim, Evidence, MEANING, claims, claims_json, claims_markdown, evaluate_all_rounded,
+    EvaluatedClaim, Evidence, MEANING, claims, claims_json, claims_markdown, evaluate_all,
 };
 use crate::readings::{
     DryPoisson, ReadingScan, rounded_evidence, scan, scan_csv, scan_markdown, two_digits_markdown,
@@ -44,8 +44,7 @@ impl ReproduceOptions {
     }
 }
 
-/// Accuracy of shots that decide claims in other readings, whose values are
-/// shown to six digits.
+/// Accuracy of shots that decide claims in other readings.
 const SCAN_ACCURACY: f64 = 1e-6;
 
 /// Everything that was computed.
@@ -53,16 +52,13 @@ const SCAN_ACCURACY: f64 = 1e-6;
 pub struct Reproduction {
     /// What the paper leaves open, as read here.
     pub reading: Reading,
-    /// The paper's chains.
     pub(crate) cases: Cases,
     /// Times of flight, peaks and the rest.
     pub evidence: Evidence,
     /// The claims with their verdicts.
     pub evaluated: Vec<EvaluatedClaim>,
-    /// The same if the Poisson ratio of the dry balls is 0.3 to one digit, if
-    /// readings were asked for.
+    /// The same with [`DryPoisson::TwoDigits`], if readings were asked for.
     pub(crate) two_digits: Option<Vec<EvaluatedClaim>>,
-    /// The signals of Fig. 2.
     pub(crate) signals: Vec<SignalShot>,
     /// One dry and one wet shot bead by bead.
     pub(crate) films: Vec<Film>,
@@ -91,7 +87,7 @@ pub fn reproduce(
         accuracy: options.accuracy,
         effort: Effort::Checked,
     };
-    let evidence = gather(&how, &done)?;
+    let evidence = gather(&how, None, &done)?;
     progress.begin("signals and films", 2);
     let signals = signals(&cases, options.accuracy)?;
     progress.advance();
@@ -108,7 +104,7 @@ pub fn reproduce(
             let closest = scan.closest().reading;
             let cases = &Cases::new(&closest)?;
             let how = Gathering { cases, accuracy: SCAN_ACCURACY, ..how };
-            let evidence = gather(&how, &|| {})?;
+            let evidence = gather(&how, None, &|| {})?;
             let rounded = evaluated(options, (&closest, one_digit), &evidence, progress)?;
             scan.flipped_in_closest = flipped(&rounded);
             (Some(two_digits), Some(scan))
@@ -139,7 +135,7 @@ fn evaluated(
     let done = || progress.advance();
     let draws = (options.seed, options.draws);
     let draws = rounded_evidence(&evaluators, reading, draws, dry_poisson, &done)?;
-    Ok(evaluate_all_rounded(&evaluators, evidence, &draws))
+    Ok(evaluate_all(&evaluators, evidence, &draws))
 }
 
 /// Claims that rounding flips, by index.
@@ -155,8 +151,7 @@ fn provenance(
     evidence: &Evidence,
     start: Instant,
 ) -> Result<Provenance, ReproduceError> {
-    let no_case = || ReproduceError::NoCase("hertz".to_owned());
-    let hertz = cases.get("hertz").ok_or_else(no_case)?;
+    let hertz = cases.get("hertz")?;
     let (plan, _warnings) = Plan::from_experiment(hertz, None)?;
     let shot = shoot(&plan.with_accuracy(options.accuracy))
         .map_err(|error| failed("hertz", hertz.speed_m_s().unwrap_or(0.0), error))?;
@@ -219,7 +214,6 @@ fn head(reading: &str) -> String {
     format!("# What the paper says, and what its model shows\n\nRead as: {reading}.\n\n{MEANING}")
 }
 
-/// JSON as a file.
 fn json(value: &serde_json::Value) -> String {
     format!("{value:#}\n")
 }

@@ -6,7 +6,6 @@ use crate::claims::{Curve, Evidence, ShotPoint, TofBranch};
 use hertzchain_chain::{BeadPair, Chain};
 use std::fmt::Write as _;
 
-/// A table as CSV.
 struct TableText(String);
 
 impl TableText {
@@ -27,7 +26,6 @@ impl TableText {
     }
 }
 
-/// The curves of the tables.
 fn curves(evidence: &Evidence) -> impl Iterator<Item = &Curve> {
     CASES.iter().filter_map(|case| evidence.curve(case))
 }
@@ -108,8 +106,7 @@ fn power_law_row(curve: &Curve, branch: TofBranch) -> Option<[f64; 8]> {
     ])
 }
 
-/// The residual of every point from its power law, relative, and the
-/// relative standard error that the paper's 20-shot mean would have.
+/// Relative residuals of points from their power laws, and standard errors of 20-shot means.
 pub(super) fn power_law_residuals_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new("case,branch,speed_m_s,tof_s,residual,standard_error");
     for curve in curves(evidence) {
@@ -129,9 +126,6 @@ pub(super) fn power_law_residuals_csv(evidence: &Evidence) -> String {
 }
 
 /// What the oils are, and what stands for them in the contacts at each speed.
-///
-/// # Errors
-/// A chain that can't be set up.
 pub(crate) fn oils_csv(cases: &Cases) -> Result<String, ReproduceError> {
     let mut csv = TableText::new(
         "case,speed_m_s,kinematic_viscosity_m2_s,density_kg_m3,dynamic_viscosity_pa_s,\
@@ -139,9 +133,7 @@ pub(crate) fn oils_csv(cases: &Cases) -> Result<String, ReproduceError> {
          effective_stiffness_n_m3_2,effective_relaxation_time_s",
     );
     for oil in cases.oils() {
-        let Some(experiment) = cases.get(&oil.case) else {
-            continue;
-        };
+        let experiment = cases.get(&oil.case)?;
         for speed in SPEEDS_M_S {
             let (chain, _) = experiment.chain(Some(speed))?;
             let (kinematic, density) = (oil.kinematic_viscosity_m2_s, oil.density_kg_m3);

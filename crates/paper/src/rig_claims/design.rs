@@ -61,8 +61,7 @@ pub(crate) static FACTORS: [Factor; 4] = [
 /// Place of the push in [`FACTORS`].
 const PUSH: usize = 1;
 
-/// Way of the springs in m by which they are pressed, whatever their force: 0.24 N
-/// at 100 N/m.
+/// Way in m by which the springs are pressed, whatever their force: 0.24 N at 100 N/m.
 const PRESSED_M: f64 = 2.4e-3;
 
 impl Factor {
@@ -95,7 +94,6 @@ pub(crate) struct TriedRig {
 }
 
 impl TriedRig {
-    /// As the paper's preset.
     pub(crate) fn usual() -> Self {
         Self {
             name: "as the preset".to_owned(),
@@ -119,8 +117,7 @@ impl TriedRig {
         rig
     }
 
-    /// With every factor at its lowest or highest level; the name has them in the
-    /// order of [`FACTORS`].
+    /// Every factor at its lowest or highest level; the name has them in this order.
     pub(crate) fn corner(high: [bool; 4]) -> Self {
         let value = |at: usize| FACTORS[at].levels[if high[at] { 2 } else { 0 }];
         let values = [0, 1, 2, 3].map(value);
@@ -135,7 +132,6 @@ impl TriedRig {
 pub struct RigDesign {
     /// What all rigs have in common: a chain with a push and a `[campaign]`.
     pub experiment: Experiment,
-    /// The rigs.
     pub(crate) rigs: Vec<TriedRig>,
     /// How many of the file's speeds, in equal ratios.
     pub speeds: usize,
@@ -166,8 +162,7 @@ impl RigDesign {
         Self { experiment, rigs, speeds: 20, shots: 8, first: 2 }
     }
 
-    /// The experiment of a rig with this many taps; every striker has exactly the
-    /// programmed speed, and records are as short as they can be.
+    /// The experiment of a rig with so many taps, exact speeds and shortest records.
     pub(super) fn experiment(&self, rig: &TriedRig, taps: usize) -> Result<Experiment, RigError> {
         let factors = FACTORS.iter().map(|factor| factor.path).zip(rig.values);
         let rest = [

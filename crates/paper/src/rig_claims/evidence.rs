@@ -1,9 +1,8 @@
 //! Series of virtual rigs, and the statistics of their spreads.
 //!
-//! Shots of one series hang together: what one leaves, the next finds. Series
-//! do not, as each begins with a chain that is laid anew. So whole series are
-//! drawn with replacement [Efron1979], and the standard deviation over draws
-//! is the standard error.
+//! Shots of one series hang together: what one leaves, the next finds. Series do not, as each
+//! begins with a chain that is laid anew. So whole series are drawn with replacement [Efron1979],
+//! and the standard deviation over draws is the standard error.
 
 use super::design::{RigDesign, TriedRig};
 use crate::claims::{SPEED_SCATTER_M_S, TofBranch};
@@ -23,7 +22,6 @@ pub(crate) struct SpeedSeries {
     pub tapped: Vec<Shot>,
 }
 
-/// All series of one rig.
 #[derive(Clone, Debug)]
 pub(crate) struct Observed {
     /// The rig.
@@ -75,12 +73,10 @@ pub(super) fn each(shots: &[Shot], of: impl Fn(&Shot) -> f64) -> Vec<f64> {
     shots.iter().map(of).filter(|v| v.is_finite()).collect()
 }
 
-/// Times of flight of the wave loop are no surer than this, in s: no spread is
-/// taken to be smaller.
+/// Accuracy of times of flight in s: no spread is taken to be smaller.
 const SURE_S: f64 = 0.2e-9;
 
-/// Standard deviation in s of a time of flight of shots of equal speed; not a
-/// number where fewer than two shots have one.
+/// Standard deviation in s of a ToF of shots of equal speed; NaN of fewer than two.
 pub(crate) fn spread_s(shots: &[Shot], branch: TofBranch) -> f64 {
     let spread_s = deviation(&each(shots, |shot| tof_s(shot, branch)));
     // Not `max`, which prefers any number to none.
@@ -115,7 +111,6 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
 /// Sets of series that are drawn.
 const DRAWS: usize = 1000;
 
-/// Seed of the draws.
 const SEED: u64 = 1;
 
 /// 95 % of a normal distribution are within so many standard errors.
@@ -148,9 +143,8 @@ pub(super) fn mean_of(values: &[f64]) -> WithError {
 
 /// ln of the geometric mean of a number that series have, with its error. Series
 /// whose number is none, having no pulses, count for nothing.
-pub(crate) fn typical(of_series: &[f64]) -> WithError {
-    let logs = of_series.iter().map(|v| v.ln());
-    let logs: Vec<f64> = logs.filter(|log| log.is_finite()).collect();
+pub(crate) fn typical(of_series: impl Iterator<Item = f64>) -> WithError {
+    let logs: Vec<f64> = of_series.map(f64::ln).filter(|log| log.is_finite()).collect();
     bootstrap(&logs, mean)
 }
 
@@ -226,7 +220,6 @@ pub fn observe(
     Ok(RigEvidence { rigs, wet })
 }
 
-/// Both series of a speed.
 fn at_speed([loose, tapped]: &Plans, series: usize, first: usize) -> Result<SpeedSeries, RigError> {
     Ok(SpeedSeries {
         speed_m_s: loose.series[series].programmed_m_s,

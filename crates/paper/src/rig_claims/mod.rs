@@ -1,9 +1,8 @@
 //! The paper's statements on its rig, compared with virtual ones.
 //!
-//! The paper does not say how its beads rub, how they are laid, how unlike
-//! they are, nor how its spring presses; so a [`RigDesign`] of rigs is tried. Each runs
-//! campaigns with taps and without, and claims, rows of a data file, are evaluated on all
-//! rigs together and on each alone.
+//! The paper does not say how its beads rub, how they are laid, how unlike they are, nor how its
+//! spring presses; so a [`RigDesign`] of rigs is tried. Each runs campaigns with taps and without,
+//! and claims, rows of a data file, are evaluated on all rigs together and on each alone.
 
 mod design;
 mod evidence;
@@ -26,9 +25,6 @@ use crate::claims::{ClaimError, Evaluator, read};
 static PAPER: &str = include_str!("../../data/rig_claims.toml");
 
 /// What the paper says of its rig, in the order of the data file.
-///
-/// # Errors
-/// When the data file is damaged, which a test rules out.
 pub(crate) fn claims() -> Result<Vec<Evaluator<RigEvidence>>, ClaimError> {
     read(PAPER, predicates::find)
 }

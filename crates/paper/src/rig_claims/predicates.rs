@@ -21,7 +21,6 @@ static PREDICATES: &[(&str, Predicate<RigEvidence>)] = &[
     ("rebound-above", rebound),
 ];
 
-/// A predicate by its name.
 pub(super) fn find(name: &str) -> Option<Predicate<RigEvidence>> {
     let row = PREDICATES.iter().find(|(known, _)| *known == name);
     row.map(|(_, predicate)| *predicate)
@@ -43,14 +42,14 @@ fn spread_and_scatter(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
         let series = observed.with_scatter_s(TofBranch::Incident);
         let ratio = |(at, scatter_s): (&SpeedSeries, f64)| incident_s(&at.loose) / scatter_s;
-        typical(&series.map(ratio).collect::<Vec<f64>>())
+        typical(series.map(ratio))
     })
 }
 
 fn taps_shrink_own(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
         let ratio = |at: &SpeedSeries| incident_s(&at.loose) / incident_s(&at.tapped);
-        typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
+        typical(within(claim, observed).map(ratio))
     })
 }
 
@@ -60,7 +59,7 @@ fn taps_shrink_seen(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
         let ratio = |(at, scatter_s): (&SpeedSeries, f64)| {
             incident_s(&at.loose).hypot(scatter_s) / incident_s(&at.tapped).hypot(scatter_s)
         };
-        typical(&series.map(ratio).collect::<Vec<f64>>())
+        typical(series.map(ratio))
     })
 }
 
@@ -68,7 +67,7 @@ fn return_spreads_own(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_rig_each(claim, evidence, |observed| {
         let ratio =
             |at: &SpeedSeries| spread_s(&at.tapped, TofBranch::Reflected) / incident_s(&at.tapped);
-        typical(&within(claim, observed).map(ratio).collect::<Vec<f64>>())
+        typical(within(claim, observed).map(ratio))
     })
 }
 
@@ -79,7 +78,7 @@ fn return_spreads_seen(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
             series.map(move |(at, scatter_s)| spread_s(&at.tapped, branch).hypot(scatter_s))
         });
         let ratios = reflected.zip(incident).map(|(r, i)| r / i);
-        typical(&ratios.collect::<Vec<f64>>())
+        typical(ratios)
     })
 }
 
@@ -136,7 +135,6 @@ fn a_rig_each(
     comparisons.finding()
 }
 
-/// One comparison a series.
 fn a_series_each(
     claim: &Claim,
     evidence: &RigEvidence,

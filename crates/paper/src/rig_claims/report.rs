@@ -22,7 +22,6 @@ pub const MEANING: &str = "A claim that fails is a statement that virtual rigs d
 pub struct RigClaims {
     /// On all dry rigs together.
     pub evaluated: Vec<EvaluatedClaim>,
-    /// On each alone.
     pub(crate) rigs: Vec<(TriedRig, Vec<EvaluatedClaim>)>,
     /// How many dry rigs there are.
     pub dry_rigs: usize,
@@ -38,12 +37,12 @@ impl RigClaims {
     pub fn evaluate(design: &RigDesign, evidence: &RigEvidence) -> Result<Self, ClaimError> {
         let evaluators = claims()?;
         let alone = evidence.alone().flat_map(|alone| {
-            let evaluated = evaluate_all(&evaluators, &alone);
+            let evaluated = evaluate_all(&evaluators, &alone, &[]);
             let rig = alone.rigs.into_iter().next();
             rig.map(|observed| (observed.rig, evaluated))
         });
         Ok(Self {
-            evaluated: evaluate_all(&evaluators, evidence),
+            evaluated: evaluate_all(&evaluators, evidence, &[]),
             rigs: alone.collect(),
             dry_rigs: evidence.rigs.len(),
             about: about(design, evidence),
@@ -119,9 +118,8 @@ const HEADER: &str = "rig,friction,push_n,gap_scatter_m,radius_spread,taps,speed
     incident_spread_s,reflected_tof_s,reflected_spread_s,rebound_m_s,rebound_spread_m_s,\
     gaps_before_m,largest_gap_before_m,gaps_after_m,largest_gap_after_m";
 
-/// Means and standard deviations of every series as CSV. Gaps are means of the
-/// sum and of the largest. The standard error of a standard deviation s of n normal
-/// shots is s/√(2(n − 1)).
+/// Means and standard deviations of every series as CSV. Gaps are means of the sum and of the
+/// largest. The standard error of a standard deviation s of n normal shots is s/√(2(n − 1)).
 pub fn series_csv(evidence: &RigEvidence) -> String {
     let mut csv = format!("{HEADER}\n");
     for Observed { rig, speeds } in evidence.rigs.iter().chain(&evidence.wet) {
@@ -146,7 +144,6 @@ pub fn series_csv(evidence: &RigEvidence) -> String {
     csv
 }
 
-/// A row's numbers.
 fn numbers(shots: &[Shot]) -> [f64; 10] {
     let of = |what: &dyn Fn(&Shot) -> f64| {
         let values = each(shots, what);

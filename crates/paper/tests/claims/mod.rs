@@ -8,7 +8,7 @@ mod breaks;
 
 use crate::claims::{
     Claim, ClaimFinding, ClaimVerdict, EvaluatedClaim, Evaluator, Evidence, MEANING, Needs, claims,
-    claims_markdown, evaluate_all, evaluate_all_rounded, predicates::find as predicate, read,
+    claims_markdown, evaluate_all, predicates::find as predicate, read,
 };
 use agreeing::{agreeing, dry};
 use breaks::{BREAKS, each};
@@ -80,7 +80,7 @@ fn only_numbers_that_the_paper_prints_have_a_deviation() {
 
 #[test]
 fn the_page_has_every_number_of_a_claim_in_one_unit() {
-    let evaluated = evaluate_all(&claims().unwrap(), &agreeing());
+    let evaluated = evaluate_all(&claims().unwrap(), &agreeing(), &[]);
     let page = claims_markdown(&evaluated, "as made up");
     for line in [
         "- Computed: 0.119434 Pa s (kinematic viscosity times density).",
@@ -141,7 +141,7 @@ fn oils_either_way_at_one_speed_alone_are_half_of_the_main_result() {
 
 #[test]
 fn a_page_of_claims_says_above_its_table_what_a_failure_means() {
-    let evaluated = evaluate_all(&claims().unwrap(), &agreeing());
+    let evaluated = evaluate_all(&claims().unwrap(), &agreeing(), &[]);
     let page = claims_markdown(&evaluated, MEANING);
     let table = page.find("| claim |").unwrap();
     assert!(page.find("does not give").unwrap() < table);
@@ -244,7 +244,7 @@ fn a_verdict_that_one_draw_changes_is_not_decidable_and_has_a_range() {
     let mut draw = printed.clone();
     draw.viscosity_over_modulus_s = 1.6e-7;
     let draws = [printed.clone(), draw];
-    let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &draws);
+    let evaluated = evaluate_all(&claims().unwrap(), &printed, &draws);
     let relaxation = evaluated.iter().find(|j| j.claim.id == "relaxation-time").unwrap();
     assert_eq!(relaxation.finding.verdict, ClaimVerdict::Holds);
     assert_eq!(relaxation.verdict, ClaimVerdict::NotDecidable);
@@ -266,7 +266,7 @@ fn motor_above_with_a_draw(off: f64) -> EvaluatedClaim {
         }
     });
     assert!(decide("motor-above", &draw).is_open());
-    let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &[draw]);
+    let evaluated = evaluate_all(&claims().unwrap(), &printed, &[draw]);
     let motor = evaluated.into_iter().find(|j| j.claim.id == "motor-above");
     motor.unwrap()
 }
@@ -292,7 +292,7 @@ fn the_page_tells_the_range_of_what_rounding_flips_and_how_many_draws_have_a_val
     let printed = agreeing();
     let mut draw = printed.clone();
     each(&mut draw, "pump", |p| p.tof_incident_s *= 1.1);
-    let evaluated = evaluate_all_rounded(&claims().unwrap(), &printed, &[printed.clone(), draw]);
+    let evaluated = evaluate_all(&claims().unwrap(), &printed, &[printed.clone(), draw]);
     let crossing = evaluated.iter().find(|j| j.claim.id == "pump-crossing");
     assert_eq!(crossing.unwrap().verdict, ClaimVerdict::NotDecidable);
     let page = claims_markdown(&evaluated, "as made up");

@@ -129,8 +129,7 @@ pub(super) fn exponents_differ(claim: &Claim, evidence: &Evidence) -> ClaimFindi
 
 /// Two ratio curves at the speeds that both have, each speed with its weight.
 struct RatioPair {
-    one: Vec<TofRatio>,
-    other: Vec<TofRatio>,
+    ratios: [Vec<TofRatio>; 2],
     weights: Vec<f64>,
 }
 
@@ -143,13 +142,14 @@ impl RatioPair {
         let pairs = a.iter().filter_map(|r| Some((*r, partner(r)?)));
         let (one, other): (Vec<TofRatio>, Vec<TofRatio>) = pairs.unzip();
         let speeds: Vec<f64> = one.iter().map(|r| r.speed_m_s.ln()).collect();
-        (one.len() > 2).then(|| Self { one, other, weights: weights(&speeds) })
+        (one.len() > 2).then(|| Self { ratios: [one, other], weights: weights(&speeds) })
     }
 
     /// Pearson's correlation of the ratios; not a number where one is constant.
     fn correlation(&self) -> f64 {
         let mean = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-            let terms = self.one.iter().zip(&self.other).zip(&self.weights);
+            let [one, other] = &self.ratios;
+            let terms = one.iter().zip(other).zip(&self.weights);
             terms.map(|((a, b), w)| w * f(a.incident, b.incident)).sum()
         };
         let (mean_a, mean_b) = (mean(&|a, _| a), mean(&|_, b| b));
@@ -164,25 +164,15 @@ impl RatioPair {
     fn accuracy(&mut self) -> f64 {
         let exact = self.correlation();
         let mut sum = 0.0;
-        for i in 0..self.one.len() {
-            for curve in [Self::one, Self::other] {
-                let Some(ratio) = curve(self).get(i).copied() else {
-                    continue;
-                };
-                curve(self)[i].incident += ratio.accuracy();
+        for i in 0..self.weights.len() {
+            for of in [0, 1] {
+                let ratio = self.ratios[of][i];
+                self.ratios[of][i].incident += ratio.accuracy();
                 sum += (self.correlation() - exact).abs();
-                curve(self)[i] = ratio;
+                self.ratios[of][i] = ratio;
             }
         }
         sum
-    }
-
-    fn one(&mut self) -> &mut Vec<TofRatio> {
-        &mut self.one
-    }
-
-    fn other(&mut self) -> &mut Vec<TofRatio> {
-        &mut self.other
     }
 }
 
@@ -216,9 +206,8 @@ pub(super) fn same_trends(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     comparisons.finding()
 }
 
-/// The first case goes with the second more than with the third, although
-/// its viscosity is nearer to the third's. The accuracies of the two
-/// correlations add up.
+/// The first case goes with the second more than with the third, although its viscosity is nearer
+/// to the third's. The accuracies of the two correlations add up.
 pub(super) fn against_viscosity(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let [one, similar, other] = &claim.cases[..] else {
         return missing();

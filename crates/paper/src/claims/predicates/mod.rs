@@ -21,12 +21,12 @@ static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("power-law-r-squared", curves::r_squared),
     ("power-law-residuals", curves::residuals),
     ("exponents-differ", curves::exponents_differ),
-    ("ratio-below", ratios::below),
-    ("ratio-above", ratios::above),
+    ("ratio-below", |claim, evidence| ratios::side(claim, evidence, -1.0)),
+    ("ratio-above", |claim, evidence| ratios::side(claim, evidence, 1.0)),
     ("ratio-crosses-once", ratios::crosses_once_upward),
     ("ratio-crosses-at", ratios::crosses_at_speed),
-    ("ratio-mainly-rises", ratios::mainly_rises),
-    ("ratio-mainly-rises-log", ratios::mainly_rises_log),
+    ("ratio-mainly-rises", |claim, evidence| ratios::mainly_rises(claim, evidence, |v| v)),
+    ("ratio-mainly-rises-log", |claim, evidence| ratios::mainly_rises(claim, evidence, f64::ln)),
     ("ratio-ends-higher", ratios::ends_higher),
     ("ratio-has-dips", ratios::has_dips),
     ("oil-either-way", ratios::either_way),
@@ -38,12 +38,16 @@ static PREDICATES: &[(&str, Predicate<Evidence>)] = &[
     ("dynamic-viscosity", dynamic_viscosity),
     ("viscosity-ratio", viscosity_ratio),
     ("viscosities-similar", viscosities_similar),
-    ("relaxation-time", relaxation_time),
-    ("relaxation-order", relaxation_order),
+    ("relaxation-time", |claim, evidence| near(claim, evidence.viscosity_over_modulus_s)),
+    ("relaxation-order", |claim, evidence| near(claim, evidence.viscosity_over_modulus_s.log10())),
     ("no-rebound", no_rebound),
-    ("peaks-overlap-data", peaks_overlap),
-    ("tofs-overlap-data", tofs_overlap),
-    ("ratios-overlap-data", ratios_overlap),
+    ("peaks-overlap-data", |claim, evidence| {
+        overlap(claim, evidence, &[MeasuredKind::SensorOverWall])
+    }),
+    ("tofs-overlap-data", |claim, evidence| {
+        overlap(claim, evidence, &TofBranch::BOTH.map(MeasuredKind::Tof))
+    }),
+    ("ratios-overlap-data", |claim, evidence| overlap(claim, evidence, &[MeasuredKind::Ratio])),
 ];
 
 /// Predicates on what a shot leaves behind when the pulses have passed.
@@ -106,10 +110,9 @@ fn place(curve: &Curve, p: &ShotPoint) -> String {
     format!("{} at {} m/s", curve.case, p.speed_m_s)
 }
 
-/// Incident, wall and reflected pulse follow each other, apart in time: each ToF
-/// exceeds the threshold times the mean full width at half maximum of its two
-/// pulses. A pulse out of order has a negative ToF. Relative errors of the ToF and of
-/// the widths add up.
+/// Incident, wall and reflected pulse follow each other, apart in time: each ToF exceeds the
+/// threshold times the mean full width at half maximum of its two pulses. A pulse out of order has
+/// a negative ToF. Relative errors of the ToF and of the widths add up.
 fn pulses_separate(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_point(claim, evidence, |comparisons, curve, p| {
         let [incident, wall, reflected] = p.widths_s;
@@ -172,8 +175,7 @@ fn closing_gaps_shortens_return(claim: &Claim, evidence: &Evidence) -> ClaimFind
     ClaimFinding { detail: format!("{}; largest share {most:.4}", finding.detail), ..finding }
 }
 
-/// Reflected less incident ToF of a shot with its gaps, with closed ones, and without
-/// losses, in words.
+/// Reflected less incident ToF with gaps, with closed ones and without losses, in words.
 fn differences(p: &ShotPoint, evidence: &Evidence) -> String {
     let lossless = evidence.curve("hertz").and_then(|c| c.at(p.speed_m_s));
     let lossless = lossless.map(|p| p.tof_reflected_s - p.tof_incident_s);
@@ -220,8 +222,7 @@ fn gaps_open(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     })
 }
 
-/// At the claim's speeds the striker's velocity, at first separation and at
-/// the end of the shot, is above the threshold: it does not come back.
+/// The striker's velocity, at first separation and at the end, is above the threshold.
 fn no_rebound(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_point(claim, evidence, |comparisons, curve, p| {
         let moments = [
@@ -264,37 +265,31 @@ fn attenuates_more(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
 
 /// Between neighbouring speeds every ToF falls by more than the threshold.
 fn tof_falls(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    let quantities = branches(claim).into_iter().map(|branch| {
-        let log = move |p: &ShotPoint| (-p.tof_s(branch).ln(), p.accuracy_reached);
-        (branch.name(), Box::new(log) as Box<dyn Fn(&ShotPoint) -> (f64, f64)>)
-    });
-    rises(claim, evidence, &quantities.collect::<Vec<_>>())
+    let named = branches(claim);
+    let all: [Quantity; 2] = [
+        (TofBranch::Incident.name(), |p| (-p.tof_incident_s.ln(), p.accuracy_reached)),
+        (TofBranch::Reflected.name(), |p| (-p.tof_reflected_s.ln(), p.accuracy_reached)),
+    ];
+    let all = all.into_iter().filter(|(name, _)| named.iter().any(|branch| branch.name() == *name));
+    rises(claim, evidence, &all.collect::<Vec<_>>())
 }
-
-/// A pulse and the height of its peak in N.
-type NamedPeak = (&'static str, fn(&ShotPoint) -> f64);
 
 /// Between neighbouring speeds every peak rises by more than the threshold.
 fn peaks_rise(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    let peaks: [NamedPeak; 3] = [
-        ("sensor peak", |p| p.sensor_peak_n),
-        ("wall peak", |p| p.wall_peak_n),
-        ("reflected peak", |p| p.returning_peak_n),
+    let peaks: [Quantity; 3] = [
+        ("sensor peak", |p| (p.sensor_peak_n.ln(), p.peak_accuracy)),
+        ("wall peak", |p| (p.wall_peak_n.ln(), p.peak_accuracy)),
+        ("reflected peak", |p| (p.returning_peak_n.ln(), p.peak_accuracy)),
     ];
-    let quantities = peaks.map(|(name, peak)| {
-        let log = move |p: &ShotPoint| (peak(p).ln(), p.peak_accuracy);
-        (name, Box::new(log) as Box<dyn Fn(&ShotPoint) -> (f64, f64)>)
-    });
-    rises(claim, evidence, &quantities)
+    rises(claim, evidence, &peaks)
 }
 
 /// A quantity's name, and its logarithm with its accuracy.
-type Quantity<'a> = (&'a str, Box<dyn Fn(&ShotPoint) -> (f64, f64)>);
+type Quantity = (&'static str, fn(&ShotPoint) -> (f64, f64));
 
-/// Logarithms rise between neighbouring speeds; the value is the smallest
-/// d ln(quantity)/d ln(speed), its accuracy that of both ends over the step in
-/// ln(speed).
-fn rises(claim: &Claim, evidence: &Evidence, quantities: &[Quantity<'_>]) -> ClaimFinding {
+/// Logarithms rise between neighbouring speeds; the value is the smallest d ln(quantity)/d
+/// ln(speed), its accuracy that of both ends over the step in ln(speed).
+fn rises(claim: &Claim, evidence: &Evidence, quantities: &[Quantity]) -> ClaimFinding {
     let Some(curves) = curves(claim, evidence) else {
         return missing();
     };
@@ -315,24 +310,8 @@ fn rises(claim: &Claim, evidence: &Evidence, quantities: &[Quantity<'_>]) -> Cla
     comparisons.finding()
 }
 
-/// Measured ratios of the sensor's peak to the wall's lie within the threshold
-/// times their standard error of the model's; not decidable without measured points.
-fn peaks_overlap(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    overlap(claim, evidence, &[MeasuredKind::SensorOverWall])
-}
-
-/// The same of measured times of flight.
-fn tofs_overlap(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    overlap(claim, evidence, &TofBranch::BOTH.map(MeasuredKind::Tof))
-}
-
-/// The same of measured wet over dry incident times of flight.
-fn ratios_overlap(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    overlap(claim, evidence, &[MeasuredKind::Ratio])
-}
-
-/// The measured points' errors are in their standard errors: the accuracy is
-/// that of the model.
+/// Measured points lie within the threshold times their standard error of the model's; not decidable
+/// without any. Their errors are in their standard errors: the accuracy is that of the model.
 fn overlap(claim: &Claim, evidence: &Evidence, of: &[MeasuredKind]) -> ClaimFinding {
     let mut comparisons = Comparisons::default();
     for point in evidence.digitised.iter().filter(|p| of.contains(&p.what)) {
@@ -354,8 +333,7 @@ fn overlap(claim: &Claim, evidence: &Evidence, of: &[MeasuredKind]) -> ClaimFind
     }
 }
 
-/// The model's number in the place of a measured point, with its absolute accuracy:
-/// relative errors of the two numbers of a ratio add up.
+/// The model's number for a measured point, with its absolute accuracy.
 fn model(
     evidence: &Evidence,
     what: MeasuredKind,
@@ -383,22 +361,19 @@ fn viscosity_pa_s(claim: &Claim, evidence: &Evidence, at: usize) -> Option<f64> 
     Some(oil.dynamic_viscosity_pa_s())
 }
 
-/// The first case's dynamic viscosity, in Pa s, lies within the threshold of the
-/// printed one.
+/// The first case's dynamic viscosity, in Pa s, lies near the printed one.
 fn dynamic_viscosity(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let viscosity = viscosity_pa_s(claim, evidence, 0);
     viscosity.map_or_else(missing, |viscosity| near(claim, viscosity))
 }
 
-/// The first case's dynamic viscosity over the second's lies within the
-/// threshold of the printed ratio.
+/// The first case's dynamic viscosity over the second's lies near the printed ratio.
 fn viscosity_ratio(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let [a, b] = [0, 1].map(|at| viscosity_pa_s(claim, evidence, at));
     a.zip(b).map_or_else(missing, |(a, b)| near(claim, a / b))
 }
 
-/// The larger dynamic viscosity of two cases is less than the threshold times
-/// the smaller.
+/// The larger of two dynamic viscosities is less than the threshold times the smaller.
 fn viscosities_similar(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     let [a, b] = [0, 1].map(|at| viscosity_pa_s(claim, evidence, at));
     a.zip(b).map_or_else(missing, |(a, b)| {
@@ -407,28 +382,16 @@ fn viscosities_similar(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     })
 }
 
-/// η/Y in s lies within the threshold of the printed value.
-fn relaxation_time(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    near(claim, evidence.viscosity_over_modulus_s)
-}
-
-/// The decimal logarithm of η/Y in s lies within the threshold of the expected
-/// one.
-fn relaxation_order(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    near(claim, evidence.viscosity_over_modulus_s.log10())
-}
-
+/// A value lies within the threshold of the printed one.
 fn near(claim: &Claim, value: f64) -> ClaimFinding {
     let expected = claim.expected.first().copied().unwrap_or(f64::NAN);
     let margin = claim.threshold - (value - expected).abs();
     of_constants(value, margin, Some(expected))
 }
 
-/// Nothing is computed here but arithmetic on printed constants: the value is
-/// wrong by what double precision rounds, n ε |x|.
+/// Of arithmetic on printed constants, as wrong as double precision rounds, n ε |x|.
 fn of_constants(value: f64, margin: f64, expected: Option<f64>) -> ClaimFinding {
-    /// Operations behind a value: two conversions of units and a product each for
-    /// two liquids, their ratio, a logarithm and the difference from what is printed.
+    /// Most operations behind a value.
     const OPERATIONS: f64 = 10.0;
     let accuracy = OPERATIONS * f64::EPSILON * value.abs();
     let detail = "from the printed constants alone".to_owned();

@@ -5,17 +5,8 @@ use crate::claims::evidence::TofRatio;
 use crate::claims::finding::{ClaimFinding, ClaimVerdict, Comparisons, Distance};
 use crate::claims::{Claim, Evidence};
 
-/// Every ratio at the claim's speeds lies below the threshold.
-pub(super) fn below(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    side(claim, evidence, -1.0)
-}
-
-/// Every ratio at the claim's speeds lies above the threshold.
-pub(super) fn above(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    side(claim, evidence, 1.0)
-}
-
-fn side(claim: &Claim, evidence: &Evidence, sign: f64) -> ClaimFinding {
+/// Every ratio at the claim's speeds lies on this side of the threshold.
+pub(super) fn side(claim: &Claim, evidence: &Evidence, sign: f64) -> ClaimFinding {
     each_case(claim, evidence, |comparisons, case, ratios| {
         let inside = |r: &&TofRatio| (claim.from_m_s..=claim.to_m_s).contains(&r.speed_m_s);
         for r in ratios.iter().filter(inside) {
@@ -43,28 +34,22 @@ fn each_case(
     comparisons.finding()
 }
 
-/// The place of a speed along an axis.
-type SpeedAxis = fn(f64) -> f64;
-
-/// In every case the ratio rises over more than the threshold's share of the
-/// range of v.
-pub(super) fn mainly_rises(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    rises_along(claim, evidence, |speed_m_s| speed_m_s)
-}
-
-/// The same of the range of ln v.
-pub(super) fn mainly_rises_log(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    rises_along(claim, evidence, f64::ln)
-}
-
-/// A share without turns is exact as long as no step between neighbouring speeds
-/// could be one of the other sign.
-fn rises_along(claim: &Claim, evidence: &Evidence, axis: SpeedAxis) -> ClaimFinding {
+/// In every case the ratio rises over more than the threshold's share of the range along an axis of
+/// speeds. A share without turns is exact as long as no step between neighbouring speeds could be
+/// one of the other sign.
+pub(super) fn mainly_rises(
+    claim: &Claim,
+    evidence: &Evidence,
+    axis: fn(f64) -> f64,
+) -> ClaimFinding {
     let mut steps: Vec<Distance> = Vec::new();
     let finding = each_case(claim, evidence, |comparisons, case, ratios| {
         let place = |r: &TofRatio| axis(r.speed_m_s);
         let all = ratios.last().map_or(0.0, place) - ratios.first().map_or(0.0, place);
-        steps.extend(ratios.windows(2).filter_map(distance_from_flat));
+        steps.extend(ratios.windows(2).map(|pair| Distance {
+            margin: (pair[1].incident - pair[0].incident).abs(),
+            accuracy: step_accuracy(&pair[0], &pair[1]),
+        }));
         let placed = |r| Placed { at: place(r), ratio: r.incident, unsure: r.accuracy() };
         let (rising, accuracy) = rising(&ratios.iter().map(placed).collect::<Vec<_>>());
         let (value, accuracy) = (rising / all, accuracy / all);
@@ -75,15 +60,6 @@ fn rises_along(claim: &Claim, evidence: &Evidence, axis: SpeedAxis) -> ClaimFind
     ClaimFinding { nearest_change: steps.into_iter().min_by(nearest), ..finding }
 }
 
-/// How far the step between two ratios is from 0.
-fn distance_from_flat(pair: &[TofRatio]) -> Option<Distance> {
-    let (low, high) = (pair.first()?, pair.last()?);
-    Some(Distance {
-        margin: (high.incident - low.incident).abs(),
-        accuracy: step_accuracy(low, high),
-    })
-}
-
 /// A ratio at its place along an axis, with its absolute accuracy.
 #[derive(Clone, Copy)]
 struct Placed {
@@ -92,11 +68,10 @@ struct Placed {
     unsure: f64,
 }
 
-/// Over how much of an axis a ratio rises, and how sure that is. Between a rise
-/// and a fall the ratio turns at the vertex of the parabola through three
-/// speeds; the parabola through every other speed, four times as wrong, shows how
-/// sure that is, and near the ends a quarter of the wider interval; what the
-/// accuracies of the three ratios move the vertex by is added. Steps within the
+/// Over how much of an axis a ratio rises, and how sure that is. Between a rise and a fall the
+/// ratio turns at the vertex of the parabola through three speeds; the parabola through every other
+/// speed, four times as wrong, shows how sure that is, and near the ends a quarter of the wider
+/// interval; what the accuracies of the three ratios move the vertex by is added. Steps within the
 /// accuracy of their ends count half and are as unsure.
 fn rising(ratios: &[Placed]) -> (f64, f64) {
     let (mut rising, mut accuracy) = (0.0, 0.0);
@@ -123,8 +98,7 @@ fn rising(ratios: &[Placed]) -> (f64, f64) {
     (rising, accuracy)
 }
 
-/// Where the parabola through three ratios turns, from the middle one; `None`
-/// where they rise or fall throughout.
+/// Where the parabola through three ratios turns, from the middle one, if it does.
 fn turn(before: &Placed, at: &Placed, after: &Placed) -> Option<f64> {
     let (left, right) = (at.at - before.at, after.at - at.at);
     let rise = (at.ratio - before.ratio) / left;
@@ -153,8 +127,7 @@ fn step_accuracy(low: &TofRatio, high: &TofRatio) -> f64 {
     low.accuracy() + high.accuracy()
 }
 
-/// In every case the ratio at the highest speed exceeds the one at the lowest
-/// by more than the threshold.
+/// In every case the ratio rises from lowest to highest speed by more than the threshold.
 pub(super) fn ends_higher(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_case(claim, evidence, |comparisons, case, ratios| {
         if let (Some(first), Some(last)) = (ratios.first(), ratios.last()) {
@@ -167,8 +140,7 @@ pub(super) fn ends_higher(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     })
 }
 
-/// Every case has a speed range in which the ratio falls from a maximum by
-/// more than the threshold.
+/// In every case the ratio falls somewhere from a maximum by more than the threshold.
 pub(super) fn has_dips(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     each_case(claim, evidence, |comparisons, case, ratios| {
         let accuracy = ratios.iter().map(|r| r.accuracy()).fold(0.0, f64::max);
@@ -227,9 +199,8 @@ fn both_sides<'a>(
     ((1.0 - low).min(high - 1.0), place())
 }
 
-/// Speed at which a ratio passes 1, and its accuracy: linear in ln v between
-/// the two speeds around it. Δv/v is the error of the ratios over their slope in
-/// ln v, and what the chord may leave out.
+/// Speed at which a ratio passes 1, and its accuracy: linear in ln v between the two speeds around
+/// it. Δv/v is the error of the ratios over their slope in ln v, and what the chord may leave out.
 fn crossing(low: &TofRatio, high: &TofRatio) -> (f64, f64) {
     let (before, after) = (low.incident - 1.0, high.incident - 1.0);
     let span = (high.speed_m_s / low.speed_m_s).ln();
@@ -261,31 +232,17 @@ fn crossings(ratios: &[TofRatio]) -> (Crossings, Crossings) {
     (up, down)
 }
 
-/// The ratios of a claim's first case.
-fn ratios(claim: &Claim, evidence: &Evidence) -> Vec<TofRatio> {
-    let case = claim.cases.first();
-    case.map_or(Vec::new(), |case| evidence.ratios(case))
-}
-
-/// An upward passage counts 1, a downward one −2: the sum is 1 for one upward
-/// passage alone.
+/// Counts of passages: the sum is 1 for one upward passage alone.
 const UPWARD: f64 = 1.0;
 const DOWNWARD: f64 = -2.0;
-
-/// Upward passages less twice the downward ones.
-fn count(ratios: &[TofRatio]) -> f64 {
-    let (up, down) = crossings(ratios);
-    up.len() as f64 * UPWARD + down.len() as f64 * DOWNWARD
-}
 
 /// Whether a ratio is 1 within its accuracy.
 fn is_open(ratio: &TofRatio) -> bool {
     (ratio.incident - 1.0).abs() <= ratio.accuracy()
 }
 
-/// The smallest or largest count when every ratio that is 1 within its accuracy
-/// may lie below or above it: of all ways to end below and above 1, the best
-/// is carried from ratio to ratio.
+/// The smallest or largest count when every ratio that is 1 within its accuracy may lie below or
+/// above it: of all ways to end below and above 1, the best is carried from ratio to ratio.
 fn extreme_count(ratios: &[TofRatio], pick: fn(f64, f64) -> f64) -> f64 {
     // What is impossible is not a number, which `pick` passes over.
     let possible = |r: &TofRatio, below: bool| match is_open(r) || (r.incident < 1.0) == below {
@@ -301,33 +258,35 @@ fn extreme_count(ratios: &[TofRatio], pick: fn(f64, f64) -> f64) -> f64 {
     pick(below, above)
 }
 
-/// By how much the count may be wrong. 0 when no ratio is so near to 1 that its
-/// side matters, for then the count is that of the exact ratios.
-fn count_accuracy(ratios: &[TofRatio]) -> f64 {
-    let value = count(ratios);
-    let (least, most) = (extreme_count(ratios, f64::min), extreme_count(ratios, f64::max));
-    (value - least).max(most - value)
-}
-
-/// The ratio that is nearest to 1, by its accuracies.
-fn nearest_to_1(ratios: &[TofRatio]) -> Option<&TofRatio> {
-    let by_accuracy = |r: &&TofRatio| (r.incident - 1.0).abs() / r.accuracy();
-    let near = |a: &&TofRatio, b: &&TofRatio| by_accuracy(a).total_cmp(&by_accuracy(b));
-    ratios.iter().min_by(near)
-}
-
-/// The ratio passes 1 once, upward. The number is that of upward passages less
-/// twice that of downward ones, which is 1 in no other case; not decidable where
-/// ratios that are 1 within their accuracy could change it. A passage is one
-/// between neighbouring speeds.
+/// The ratio passes 1 once, upward. The number is that of upward passages less twice that of
+/// downward ones, which is 1 in no other case; not decidable where ratios that are 1 within their
+/// accuracy could change it. A passage is one between neighbouring speeds.
 pub(super) fn crosses_once_upward(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    let ratios = ratios(claim, evidence);
-    let (Some(nearest), Some(expected)) = (nearest_to_1(&ratios), claim.expected.first()) else {
+    let ratios = claim.cases.first().map_or(Vec::new(), |case| evidence.ratios(case));
+    let by_accuracy = |r: &&TofRatio| (r.incident - 1.0).abs() / r.accuracy();
+    let nearest = ratios.iter().min_by(|a, b| by_accuracy(a).total_cmp(&by_accuracy(b)));
+    let (Some(nearest), Some(expected)) = (nearest, claim.expected.first()) else {
         return missing();
     };
-    let (value, accuracy) = (count(&ratios), count_accuracy(&ratios));
+    let (up, down) = crossings(&ratios);
+    let value = up.len() as f64 * UPWARD + down.len() as f64 * DOWNWARD;
+    // 0 when no ratio is so near to 1 that its side matters.
+    let (least, most) = (extreme_count(&ratios, f64::min), extreme_count(&ratios, f64::max));
+    let accuracy = (value - least).max(most - value);
     let margin = claim.threshold - (value - expected).abs();
-    let detail = passages(&ratios, nearest);
+    let end = |r: Option<&TofRatio>| {
+        r.map_or(String::new(), |r| format!("{:.5} at {} m/s", r.incident, r.speed_m_s))
+    };
+    let detail = format!(
+        "{} upward and {} downward; from {} to {}; the ratio nearest to 1 is off by {:.1e} ± {:.0e}, at {} m/s",
+        up.len(),
+        down.len(),
+        end(ratios.first()),
+        end(ratios.last()),
+        (nearest.incident - 1.0).abs(),
+        nearest.accuracy(),
+        nearest.speed_m_s
+    );
     ClaimFinding {
         expected: Some(*expected),
         nearest_change: Some(Distance {
@@ -338,28 +297,9 @@ pub(super) fn crosses_once_upward(claim: &Claim, evidence: &Evidence) -> ClaimFi
     }
 }
 
-/// The passages of 1, and the ratio nearest to it, in words.
-fn passages(ratios: &[TofRatio], nearest: &TofRatio) -> String {
-    let (up, down) = crossings(ratios);
-    let end = |r: Option<&TofRatio>| {
-        r.map_or(String::new(), |r| format!("{:.5} at {} m/s", r.incident, r.speed_m_s))
-    };
-    format!(
-        "{} upward and {} downward; from {} to {}; the ratio nearest to 1 is off by {:.1e} ± {:.0e}, at {} m/s",
-        up.len(),
-        down.len(),
-        end(ratios.first()),
-        end(ratios.last()),
-        (nearest.incident - 1.0).abs(),
-        nearest.accuracy(),
-        nearest.speed_m_s
-    )
-}
-
-/// The upward passage of 1 that is nearest to the printed speed lies within the
-/// threshold of it; fails without one.
+/// The upward passage of 1 nearest to the printed speed lies within the threshold of it.
 pub(super) fn crosses_at_speed(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    let ratios = ratios(claim, evidence);
+    let ratios = claim.cases.first().map_or(Vec::new(), |case| evidence.ratios(case));
     let (false, Some(expected)) = (ratios.is_empty(), claim.expected.first()) else {
         return missing();
     };
@@ -367,21 +307,21 @@ pub(super) fn crosses_at_speed(claim: &Claim, evidence: &Evidence) -> ClaimFindi
     let off = |speed: f64| (speed - expected).abs();
     let nearest = up.iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
     let Some(&(value, accuracy)) = nearest else {
-        return nowhere(*expected, ratios.iter().any(is_open));
+        // A ratio of 1 within its accuracy may hide a passage.
+        let verdict = match ratios.iter().any(is_open) {
+            true => ClaimVerdict::NotDecidable,
+            false => ClaimVerdict::Fails,
+        };
+        return ClaimFinding {
+            verdict,
+            leaning: ClaimVerdict::Fails,
+            expected: Some(*expected),
+            ..ClaimFinding::without_numbers("no upward passage of 1")
+        };
     };
     let detail = format!("the nearest of {} upward passages", up.len());
     ClaimFinding {
         expected: Some(*expected),
         ..ClaimFinding::of_one(claim.threshold - off(value), value, accuracy, detail)
-    }
-}
-
-/// The answer without a passage, which a ratio of 1 within its accuracy may hide.
-fn nowhere(expected: f64, open: bool) -> ClaimFinding {
-    ClaimFinding {
-        verdict: if open { ClaimVerdict::NotDecidable } else { ClaimVerdict::Fails },
-        leaning: ClaimVerdict::Fails,
-        expected: Some(expected),
-        ..ClaimFinding::without_numbers("no upward passage of 1")
     }
 }
