@@ -45,18 +45,19 @@ pub(crate) fn forward(lower: &[Vec<f64>], rights: &[f64]) -> Vec<f64> {
 /// What rounding leaves of a number that is 0: some tens of operations.
 const CHOLESKY_ROUNDING: f64 = 1e-14;
 
-/// L with L Lᵀ = the matrix, row by row up to the diagonal; none if it is not
-/// positive definite as far as rounding matters.
-pub(crate) fn cholesky(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    let mut lower: Vec<Vec<f64>> = Vec::with_capacity(matrix.len());
-    for (at, entries) in matrix.iter().enumerate() {
+/// L with L Lᵀ = the symmetric matrix of these entries, row by row up to the diagonal; none if it is
+/// not positive definite as far as rounding matters.
+pub(crate) fn cholesky(size: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Vec<Vec<f64>>> {
+    let mut lower: Vec<Vec<f64>> = Vec::with_capacity(size);
+    for at in 0..size {
         let mut row: Vec<f64> = Vec::with_capacity(at + 1);
         for above in &lower {
             let known: f64 = above.iter().zip(&row).map(|(a, b)| a * b).sum();
-            row.push((entries[row.len()] - known) / above[above.len() - 1]);
+            row.push((entry(at, row.len()) - known) / above[above.len() - 1]);
         }
-        let left = entries[at] - row.iter().map(|x| x * x).sum::<f64>();
-        if left.is_nan() || left <= CHOLESKY_ROUNDING * entries[at] {
+        let diagonal = entry(at, at);
+        let left = diagonal - row.iter().map(|x| x * x).sum::<f64>();
+        if left.is_nan() || left <= CHOLESKY_ROUNDING * diagonal {
             return None;
         }
         row.push(left.sqrt());

@@ -57,7 +57,7 @@ fn picked(shots: &[Shot], group: &[usize], kind: PulseKind) -> Vec<(usize, Pulse
         let flight = shot.flight.as_ref().ok()?;
         let own = flight.picks.pulse(kind)?;
         let time_s = own.time_s + skew_s(flight, kind);
-        Some((*number, (shot.samples[kind as usize].as_ref()?, Picked { time_s, ..own })))
+        Some((*number, (shot.samples[kind as usize].as_deref()?, Picked { time_s, ..own })))
     };
     let (numbers, pulses): (Vec<usize>, Vec<_>) = group.iter().filter_map(own).unzip();
     let picks = numbers.into_iter().zip(pool(&pulses));

@@ -4,7 +4,7 @@ use crate::error::file_name;
 use crate::level::shots_at_level;
 use crate::records::{Parts, ReadOptions, Record, Records, read};
 use crate::separation::{Content, content};
-use crate::signal::{Bandwidth, Method, PulseSamples, QualityFlag, SignalOptions};
+use crate::signal::{Bandwidth, Method, QualityFlag, SignalOptions};
 use crate::{Example, Level, MeasureError, Shot, ShotList};
 use indexmap::IndexMap;
 use rayon::prelude::*;
@@ -303,7 +303,7 @@ impl Measurement {
     }
 
     fn hold_samples(&mut self, shot: &mut Shot) {
-        let own: usize = shot.samples.iter().flatten().map(PulseSamples::count).sum();
+        let own: usize = shot.samples.iter().flatten().map(|samples| samples.count()).sum();
         match self.samples_held + own > MOST_HELD {
             true => shot.samples = [const { None }; 3],
             false => self.samples_held += own,

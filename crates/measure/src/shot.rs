@@ -44,7 +44,7 @@ pub struct Shot {
     /// Whether the list of shots says that it does not count.
     pub excluded: bool,
     /// Samples about its pulses, as [`Measured::samples`].
-    pub samples: [Option<PulseSamples>; 3],
+    pub samples: [Option<Box<PulseSamples>>; 3],
 }
 
 impl Shot {

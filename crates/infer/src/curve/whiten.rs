@@ -1,7 +1,7 @@
 //! Residuals of one row, made independent.
 
 use crate::data::widening;
-use crate::linear::{cholesky, forward, square};
+use crate::linear::{cholesky, forward};
 
 /// Standard errors of what was measured at one speed.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +79,7 @@ impl Errors {
 pub(super) fn whiten(residuals: &[f64], errors: &Errors) -> Vec<(f64, f64)> {
     let moved = &errors.moved;
     let covariance = |i: usize, j: usize| errors.own(i, j) + moved[i] * moved[j];
-    let Some(lower) = cholesky(&square(residuals.len(), covariance)) else {
+    let Some(lower) = cholesky(residuals.len(), covariance) else {
         return vec![(f64::NAN, f64::NAN); residuals.len()];
     };
     let white = forward(&lower, residuals).into_iter().zip(&lower).enumerate();

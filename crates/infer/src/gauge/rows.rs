@@ -6,7 +6,7 @@ use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::Data;
 use crate::goodness::LEAST_BY_CHANCE;
 use crate::least_squares::{Descent, Merit, run};
-use crate::linear::{cholesky, dot, forward, least_squares, square};
+use crate::linear::{cholesky, dot, forward, least_squares};
 use crate::{Covariance, DataRow, Fitting, InferError, Loss, Parameter, Problem, fit};
 use hertzchain_measure::signal::ChiSquare;
 use rayon::prelude::*;
@@ -454,12 +454,12 @@ fn distinct(
 /// may move: rᵀ C⁻¹ r with C = 1 + D Dᵀ + s² S Sᵀ, D the moves and S the slopes by ln K and ln A,
 /// which make up for moves by small changes s.
 fn allowing(residuals: &[f64], slopes: &[Vec<f64>], moves: &[Vec<f64>]) -> f64 {
-    let covariance = square(residuals.len(), |i, j| {
+    let covariance = |i: usize, j: usize| {
         let own = f64::from(u8::from(i == j));
         let moved: f64 = moves.iter().map(|d| d[i] * d[j]).sum();
         own + moved + SMALL * SMALL * slopes.iter().map(|s| s[i] * s[j]).sum::<f64>()
-    });
-    let white = cholesky(&covariance).map(|lower| forward(&lower, residuals));
+    };
+    let white = cholesky(residuals.len(), covariance).map(|lower| forward(&lower, residuals));
     let white = white.as_deref().unwrap_or(residuals);
     dot(white, white)
 }

@@ -64,7 +64,7 @@ pub struct Measured {
     /// Times of flight, or why there are none.
     pub flight: Result<Flight>,
     /// Samples about its pulses, from which shots of one speed have one shape.
-    pub samples: [Option<PulseSamples>; 3],
+    pub samples: [Option<Box<PulseSamples>>; 3],
 }
 
 /// Finds and picks the pulses of one shot.
@@ -152,7 +152,7 @@ fn drift(found: &Found, channels: &[Cow<'_, [f64]>], which: usize) -> Option<Det
 
 fn with_drift(
     mut picks: Picks,
-    samples: &mut [Option<PulseSamples>; 3],
+    samples: &mut [Option<Box<PulseSamples>>; 3],
     drifts: &[Option<Detrended>],
     interval_s: f64,
 ) -> Picks {

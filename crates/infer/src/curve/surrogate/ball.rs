@@ -1,7 +1,7 @@
 //! The room around a fit in units of its own errors.
 
 use super::{no_room, side};
-use crate::linear::{cholesky, dot, forward, norm, square};
+use crate::linear::{cholesky, dot, forward, norm};
 use crate::problem::Problem;
 use crate::random::{Purpose, RandomStream};
 use crate::{Covariance, Fit, InferError, Parameter};
@@ -32,8 +32,9 @@ impl Ball {
         for (at, parameter) in parameters.iter().enumerate() {
             side(parameter, centre[at], reach, sd[at])?;
         }
-        let correlations = square(sd.len(), |i, j| covariance.matrix[i][j] / (sd[i] * sd[j]));
-        Ok(Self { lower: cholesky(&correlations).ok_or(no_room())?, centre, sd, reach, parameters })
+        let correlation = |i: usize, j: usize| covariance.matrix[i][j] / (sd[i] * sd[j]);
+        let lower = cholesky(sd.len(), correlation).ok_or(no_room())?;
+        Ok(Self { lower, centre, sd, reach, parameters })
     }
 
     /// A point in independent standard errors, and whether the ball reaches so far.

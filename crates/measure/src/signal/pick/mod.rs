@@ -207,7 +207,7 @@ pub(crate) fn pick(
     found: &Found,
     method: &Method,
     (ranges, amplifier): ([Option<DigitiserRange>; 2], Option<Bandwidth>),
-) -> Result<(Picks, [Option<PulseSamples>; 3])> {
+) -> Result<(Picks, [Option<Box<PulseSamples>>; 3])> {
     MeasureError::positive("sampling interval in s", interval_s)?;
     method.check()?;
     let need = |pulse: &Option<Pulse>, kind| pulse.ok_or(MeasureError::Missing(kind));
@@ -244,6 +244,7 @@ pub(crate) fn pick(
         let time = picked.time_s / interval_s;
         PulseSamples::new(&views[kind as usize], &pulse, time, interval_s)
             .filter(|_| picks.competing[kind as usize].is_none())
+            .map(Box::new)
     });
     Ok((picks, samples))
 }
