@@ -2,7 +2,7 @@
 
 use crate::curves::{GroupSpeed, grouped};
 use crate::signal::{Flight, Picked, PulseKind, pool};
-use crate::{Curves, Grouping, Measurement, Shot};
+use crate::{Curves, Example, Grouping, Measurement, Shot};
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
@@ -11,12 +11,15 @@ impl Measurement {
     /// case and a speed that count. Noise leaves the shape of one pulse open and that of many less: at
     /// 40 dB times of 20 shots are two to three times as exact as each alone.
     pub fn curves(&mut self, grouping: &Grouping) -> Curves {
+        // Names need not tell shots apart.
+        let number = |example: &Example| self.shots.iter().position(|shot| *shot == example.shot);
+        let examples = self.examples.iter().chain(&self.flagged);
+        let numbers: Vec<Option<usize>> = examples.map(number).collect();
         pick_with_common_shapes(&mut self.shots, grouping);
-        for example in self.examples.iter_mut().chain(&mut self.flagged) {
-            let same =
-                |shot: &&Shot| (&shot.file, shot.shot) == (&example.shot.file, example.shot.shot);
-            if let Some(shot) = self.shots.iter().find(same) {
-                example.shot.flight = shot.flight.clone();
+        let examples = self.examples.iter_mut().chain(&mut self.flagged);
+        for (example, number) in examples.zip(numbers) {
+            if let Some(number) = number {
+                example.shot.flight = self.shots[number].flight.clone();
             }
         }
         Curves::of(&self.shots, grouping)

@@ -304,10 +304,14 @@ impl Measurement {
 
     fn hold_samples(&mut self, shot: &mut Shot) {
         let own: usize = shot.samples.iter().flatten().map(|samples| samples.count()).sum();
-        match self.samples_held + own > MOST_HELD {
-            true => shot.samples = [const { None }; 3],
-            false => self.samples_held += own,
+        if self.samples_held + own <= MOST_HELD {
+            self.samples_held += own;
+            return;
         }
+        shot.samples = [const { None }; 3];
+        let text = "holds shots beyond those whose pulses fit in 250 MB: each keeps its own pick, \
+                    without the shape of others; measure fewer files at a time";
+        self.note(text, &shot.file);
     }
 
     fn note(&mut self, text: &str, file: &Path) {

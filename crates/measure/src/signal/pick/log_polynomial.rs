@@ -159,15 +159,15 @@ pub(super) struct ShapePrior {
 }
 
 impl ShapePrior {
-    /// Of a whole pulse over a share of the usual width. An asymmetric one is of no usual shape, and
+    /// Of a whole pulse over a share of the usual width. A skewed one is of no usual shape, and
     /// its coefficients may be as large as those of any.
-    pub(super) fn of_whole(kind: PulseKind, asymmetry: f64, share: f64) -> Self {
+    pub(super) fn of_whole(kind: PulseKind, skewness: f64, share: f64) -> Self {
         let Shapes { mean, together, alone } = &SHAPES[kind as usize];
         let powers = powers(share);
         let scaled = |of: &[f64; MOST - SHAPE]| -> Row {
             from_fn(|k| k.checked_sub(SHAPE).map_or(0.0, |i| of[i] * powers[k]))
         };
-        let alone = powers.map(|power| alone.hypot(asymmetry) * power);
+        let alone = powers.map(|power| alone.hypot(skewness) * power);
         Self::new(scaled(mean), alone, &together.each_ref().map(scaled))
     }
 

@@ -22,9 +22,6 @@ const WIDTHS: f64 = 0.03;
 const ANOTHER: f64 = 5.0;
 /// Rounds of fitting the bell and the pulses; each leaves a tenth of the error or less.
 const ROUNDS: usize = 4;
-/// How far a slope beneath moves a whole bell over how far it moves a top: ∫x² f dx over ∫x² f² dx, for a
-/// Gaussian f over 1.1 widths.
-const WHOLE_BELL: f64 = 1.53;
 /// Error by a subtracted baseline over that by noise up to which a pulse is picked with others: above
 /// it, what is left of the baseline bends it.
 const DRIFT: f64 = 0.2;
@@ -145,8 +142,7 @@ impl PulseSamples {
         let misfit = (place.squares / place.freedom).sqrt();
         Picked {
             time_s: self.interval_s * (place.time + half * top.u + likely),
-            sigma_s: (self.interval_s * variance.sqrt().hypot(under))
-                .hypot(WHOLE_BELL * self.of_drift_s),
+            sigma_s: (self.interval_s * variance.sqrt().hypot(under)).hypot(self.of_drift_s),
             systematic: Systematic {
                 superposition_s: -under * self.interval_s,
                 shape_s: shape * self.interval_s,
@@ -208,8 +204,8 @@ impl Pool {
             median(&pulses.iter().map(|(one, _)| of(one)).collect::<Vec<f64>>())
         };
         let half = (share * middle(&|one| half_width(&one.pulse, one.broad_noise))?).max(4.0);
-        let asymmetry = middle(&|one| one.pulse.skewness())?;
-        let prior = ShapePrior::of_whole(pulses.first()?.0.pulse.kind, asymmetry, share);
+        let skewness = middle(&|one| one.pulse.skewness())?;
+        let prior = ShapePrior::of_whole(pulses.first()?.0.pulse.kind, skewness, share);
         let most = SAY * middle(&PulseSamples::relative_noise)?;
         let begun = pulses.iter().map(|(one, own)| Place::begun(one, own));
         let mut places: Vec<Option<Place>> = begun.collect();
@@ -224,10 +220,12 @@ impl Pool {
                 squares += (points.len() - before) as f64 * noise * noise;
                 says += 1.0;
             }
+            if says < 2.0 {
+                return None;
+            }
             let noise = (squares / points.len() as f64).sqrt();
             let before = last.as_ref().map(|(bell, _)| bell.polynomial.solution.values);
-            let enough = (says > 1.0).then_some(says)?;
-            let bell = CommonBell::new(points, (noise, enough), (prior, share, half), before)?;
+            let bell = CommonBell::new(points, (noise, says), (prior, share, half), before)?;
             let placed = |((one, _), place): (&(&PulseSamples, Picked), &Option<Place>)| {
                 one.placed(&bell, (*place)?, half)
             };
