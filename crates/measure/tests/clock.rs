@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 const FLIGHTS_S: [f64; 2] = [700.3e-6, 781.1e-6];
 
 /// A recording whose times are printed to so many digits behind the point.
-fn recording(interval_s: f64, digits: usize) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("clock");
+fn recording(test: &str, interval_s: f64, digits: usize) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("clock").join(test);
     fs::create_dir_all(&folder).unwrap();
     let path = folder.join(format!("{interval_s:e}-{digits}.csv"));
     let begun_s = 500e-6;
@@ -50,7 +50,7 @@ fn departures_s(measured: &Measurement) -> [(f64, f64); 2] {
 fn rounded_times_bias_no_time_of_flight_beyond_its_error() {
     for interval_s in [1e-6, 1.0013e-6, 0.998e-6] {
         for digits in [5, 6, 8] {
-            let found = measured(&recording(interval_s, digits), None);
+            let found = measured(&recording("any-rate", interval_s, digits), None);
             for (off_s, sigma_s) in departures_s(&found) {
                 // Twice the error: a uniform share of what digits leave open ends at 1.73.
                 assert!(off_s < 2.0 * sigma_s, "{interval_s:e} {digits}: {off_s:e} {sigma_s:e}");
@@ -62,7 +62,7 @@ fn rounded_times_bias_no_time_of_flight_beyond_its_error() {
 #[test]
 fn a_given_rate_leaves_nothing_of_rounded_times() {
     for digits in [5, 6] {
-        let path = recording(1.0013e-6, digits);
+        let path = recording("given-rate", 1.0013e-6, digits);
         let loose = departures_s(&measured(&path, None));
         let found = measured(&path, Some(1.0013e-6_f64.recip()));
         assert_eq!(found.notes, []);
