@@ -19,17 +19,24 @@ fn normal(rng: &mut ChaCha8Rng) -> f64 {
 /// A shot of which the later fragment is higher by this much.
 fn shot(later_higher: f64, seed: u64) -> Flight {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let fragments = [(-APART_S, 0.1 - 0.5 * later_higher), (0.0, 0.1 + 0.5 * later_higher)];
+    measured(fragments, |_| 0.0, NOISE, &mut rng)
+}
+
+/// A shot whose return has fragments at these times after [`LATER_S`], and something else.
+fn measured(
+    fragments: [(f64, f64); 2],
+    other: impl Fn(f64) -> f64,
+    noise: f64,
+    rng: &mut ChaCha8Rng,
+) -> Flight {
     let bell = Shape::cos_power(6.0);
-    let pulses = [
-        (0.8e-3, 1.0, 60e-6),
-        (WALL_S, 1.6, 52e-6),
-        (LATER_S - APART_S, 0.1 - 0.5 * later_higher, 40e-6),
-        (LATER_S, 0.1 + 0.5 * later_higher, 40e-6),
-    ];
+    let [first, second] = fragments.map(|(after_s, height)| (LATER_S + after_s, height, 40e-6));
+    let pulses = [(0.8e-3, 1.0, 60e-6), (WALL_S, 1.6, 52e-6), first, second];
     let sample = |i: u32| {
         let t = f64::from(i) * 1e-6;
         let clean = pulses.iter().map(|(at, h, w)| h * bell.value((t - at) / w));
-        clean.sum::<f64>() + NOISE * normal(&mut rng)
+        clean.sum::<f64>() + other(t) + noise * normal(rng)
     };
     let samples: Vec<f64> = (0..4000).map(sample).collect();
     let measured = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
@@ -100,4 +107,36 @@ fn shots_that_differ_keep_their_own_fragments() {
     }
     let timed = all.iter().filter(|flight| flight.reflected_s.is_some());
     assert!(timed.count() >= 15);
+}
+
+/// Of a later fragment that a plateau follows, the width holds the earlier one, too.
+#[test]
+fn fragments_with_a_valley_between_them_compete_however_wide_the_return() {
+    for seed in 300..320 {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let plateau = |t: f64| {
+            let rise = ((t - LATER_S) / 20e-6).clamp(-20.0, 20.0).exp();
+            let fall = ((t - LATER_S - 350e-6) / 20e-6).clamp(-20.0, 20.0).exp();
+            0.05 * rise / (1.0 + rise) / (1.0 + fall)
+        };
+        let fragments = [(-90e-6, 0.081), (0.0, 0.056)];
+        let flight = measured(fragments, plateau, 0.002, &mut rng);
+        assert!(flight.picks.competing[2].is_some(), "{seed}");
+    }
+}
+
+/// The wall's force falls under two fragments that are equal: how much lower the later one is says
+/// nothing, in one shot or in twenty.
+#[test]
+fn what_lies_under_a_return_leaves_it_ambiguous() {
+    let own: Vec<Flight> = (400..420)
+        .map(|seed| {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let fall =
+                |t: f64| if t > WALL_S { 0.06 * (-(t - WALL_S) / 300e-6).exp() } else { 0.0 };
+            measured([(-APART_S, 0.2), (0.0, 0.2)], fall, 2e-4, &mut rng)
+        })
+        .collect();
+    let all = resolve_ambiguous(&own);
+    assert!(all.iter().all(|flight| flight.reflected_s.is_none()));
 }

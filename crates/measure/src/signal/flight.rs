@@ -291,7 +291,7 @@ impl Flight {
         picks.set(kind, most);
         let value = lower.value.abs();
         let lower = Estimate { value, ..lower };
-        picks.competing[kind as usize] = Some(CompetingPick { picked, lower });
+        picks.competing[kind as usize] = Some(CompetingPick { picked, lower, ..other });
         picks.flight().with_interval_error(self.interval_error)
     }
 }

@@ -246,9 +246,14 @@ impl<'a> Smoothed<'a> {
         maxima.into_iter().map(maximum).collect()
     }
 
-    fn height(&self, at: usize) -> f64 {
+    pub(super) fn height(&self, at: usize) -> f64 {
         let value = at.checked_sub(self.first).and_then(|i| self.values.get(i));
         value.copied().unwrap_or(0.0)
+    }
+
+    /// The least height between two samples.
+    pub(super) fn least(&self, one: usize, other: usize) -> f64 {
+        (one.min(other)..=one.max(other)).map(|at| self.height(at)).fold(f64::INFINITY, f64::min)
     }
 
     /// Both sides of the full width at half maximum about a maximum, corrected for the smoothing.

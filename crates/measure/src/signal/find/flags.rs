@@ -105,8 +105,12 @@ fn saturated(
 const CLOSE: f64 = 7.0;
 /// Most of them: a reflected pulse has two or three fragments of like height.
 const MOST: usize = 2;
-/// Share of the width within which two maxima are noise, or digitiser steps, on one top.
+/// Share of the width within which two maxima are noise, or digitiser steps, on one top, unless the
+/// signal falls by a share of the lower one between them.
 const APART: f64 = 0.5;
+const VALLEY: f64 = 0.2;
+/// Half widths of the rise before a maximum where its pulse has hardly begun.
+const BEGUN: f64 = 2.6;
 /// Standard errors of a difference in height beyond which it is no chance: 0.13 %.
 const SIGNIFICANT: f64 = 3.0;
 
@@ -116,8 +120,9 @@ pub(super) fn other_maxima(
     (from, to): (f64, f64),
     chosen: &SmoothedMaximum,
 ) -> Vec<SmoothedMaximum> {
-    let least = chosen.height - CLOSE * smoothed.noise;
     let (rise, fall) = smoothed.sides(chosen);
+    let under = smoothed.height(chosen.at.saturating_sub((BEGUN * rise) as usize)).max(0.0);
+    let least = chosen.height - CLOSE * smoothed.noise - under;
     let apart = (APART * (rise + fall)) as usize;
     let near =
         |m: &&SmoothedMaximum| (m.at as f64) > from && (m.at as f64) < to && m.height > least;
@@ -125,7 +130,10 @@ pub(super) fn other_maxima(
     near.sort_by(|a, b| b.height.total_cmp(&a.height));
     let mut tops = vec![*chosen];
     for maximum in near {
-        let is_other = |top: &SmoothedMaximum| top.at.abs_diff(maximum.at) > apart;
+        let is_other = |top: &SmoothedMaximum| {
+            let valley = (1.0 - VALLEY) * maximum.height.min(top.height);
+            top.at.abs_diff(maximum.at) > apart || smoothed.least(top.at, maximum.at) < valley
+        };
         if tops.len() <= MOST && tops.iter().all(is_other) {
             tops.push(maximum);
         }
@@ -150,22 +158,33 @@ pub(super) fn compare_maxima(found: &mut Found, others: &[Pulse], channels: Chan
         let mut tops: Vec<(Pulse, f64, Estimate)> = Vec::new();
         for pulse in pulses {
             let (time, height) = top_by_fit(found, &pulse, channels);
-            let apart = APART * pulse.width_samples;
-            if !tops.iter().any(|other| (other.1 - time).abs() < apart) {
+            // A fit to the lower one may end at the higher.
+            let is_same = |(other, at, _): &(Pulse, f64, Estimate)| {
+                (at - time).abs() < APART * other.at.abs_diff(pulse.at) as f64
+            };
+            if !tops.iter().any(is_same) {
                 tops.push((pulse, time, height));
             }
         }
         tops.sort_by(|a, b| b.2.value.total_cmp(&a.2.value));
-        let [(first, _, most), (pulse, _, next), ..] = tops[..] else {
+        let [(first, at, most), (pulse, other, next), ..] = tops[..] else {
             continue;
+        };
+        let reflected = kind == PulseKind::Reflected;
+        let superposition = match found.wall.filter(|_| reflected) {
+            Some(wall) => ChannelView::new(channels, kind, *found.normalisation(kind))
+                .after(&wall)
+                .difference_under(&first, [at, other]),
+            None => 0.0,
         };
         if let Some(own) = found.pulses_mut().find(|own| own.kind == kind) {
             *own = first;
         }
         let lower =
             Estimate { value: most.value - next.value, sigma: most.sigma.hypot(next.sigma) };
-        found.competing.push(CompetingMaximum { pulse, lower });
-        if lower.value < SIGNIFICANT * lower.sigma || lower.value <= 0.0 {
+        found.competing.push(CompetingMaximum { pulse, lower, superposition });
+        let sigma = lower.sigma.hypot(superposition);
+        if lower.value < SIGNIFICANT * sigma || lower.value <= 0.0 {
             found.flag([QualityFlag::AmbiguousMaximum(kind)]);
         }
     }

@@ -236,6 +236,8 @@ pub struct CompetingMaximum {
     pub pulse: Pulse,
     /// How much lower it is than the largest, in the samples' unit, by fits about both.
     pub lower: Estimate,
+    /// Standard deviation of the part of that which lies under a reflected pulse in a summed channel.
+    pub superposition: f64,
 }
 
 /// The pulses of a shot.

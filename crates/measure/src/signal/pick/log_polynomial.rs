@@ -17,6 +17,8 @@ pub(super) const WHOLE_WIDTH: f64 = 1.1;
 pub(super) const WIDTH: f64 = 1.2;
 /// Noise over height above which the flanks do not show which is the steeper.
 const NOISY: f64 = 0.05;
+/// The widest fit there, in widths of the steeper flank.
+const WIDER: f64 = 1.4;
 /// Degree of the logarithm: pulses of computed dry and wet rows between 0.1 and
 /// 1.2 m/s are followed to 30 ns.
 pub(super) const DEGREE: usize = MOST - 1;
@@ -101,10 +103,11 @@ pub(super) fn pick(view: &ChannelView<'_>, pulse: &Pulse) -> Option<Picked> {
 }
 
 /// Half the usual width of a fit in samples. In noise, which widens either side or narrows it, the
-/// shorter one is too short.
+/// shorter one is too short; but flanks that differ by more are those of a skewed pulse.
 pub(super) fn half_width(pulse: &Pulse, noise: f64) -> f64 {
     let noisy = noise > NOISY * pulse.height;
-    let width = if noisy { pulse.width_samples } else { pulse.steep_width_samples() };
+    let steep = pulse.steep_width_samples();
+    let width = if noisy { pulse.width_samples.min(WIDER * steep) } else { steep };
     0.5 * WHOLE_WIDTH * width
 }
 

@@ -96,15 +96,22 @@ pub struct CompetingPick {
     pub picked: Picked,
     /// How much lower it is than the one that was picked, in the samples' unit.
     pub lower: Estimate,
+    /// Standard deviation of the part of that which lies under a reflected pulse in a summed channel
+    /// and is the same in equal shots.
+    pub superposition: f64,
 }
 
 impl CompetingPick {
-    /// Probability that noise alone made it the lower: the normal distribution's tail.
+    /// Probability that it is the higher but for noise and what lies under both: the normal
+    /// distribution's tail.
     pub(crate) fn p_value(&self) -> f64 {
         let Estimate { value, sigma } = self.lower;
         match value == 0.0 {
             true => 0.5,
-            false => 0.5 * libm::erfc(value / sigma / std::f64::consts::SQRT_2),
+            false => {
+                let sigma = sigma.hypot(self.superposition);
+                0.5 * libm::erfc(value / sigma / std::f64::consts::SQRT_2)
+            }
         }
     }
 }
@@ -149,6 +156,11 @@ impl<'a> ChannelView<'a> {
             wall: None,
             inverse: [0.0; 2],
         }
+    }
+
+    /// The same with the wall's maximum, under whose fall the reflected pulse lies.
+    pub(crate) fn after(self, wall: &Pulse) -> Self {
+        Self { wall: Some(wall.at), ..self }
     }
 
     fn height(&self, sample: usize) -> Option<f64> {
@@ -231,7 +243,8 @@ pub(crate) fn pick(
     let competing = |kind| {
         let all = &found.competing;
         let other = all.iter().find(|other| other.pulse.kind == kind)?;
-        Some(CompetingPick { picked: pick(&other.pulse).ok()?, lower: other.lower })
+        let picked = pick(&other.pulse).ok()?;
+        Some(CompetingPick { picked, lower: other.lower, superposition: other.superposition })
     };
     let mut competing = PulseKind::ALL.map(competing);
     competing[2] = competing[2].filter(|_| reflected.is_some());

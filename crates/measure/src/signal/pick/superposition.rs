@@ -33,6 +33,12 @@ impl ChannelView<'_> {
         share * self.largest_fall_under(pulse, time)
     }
 
+    /// Standard deviation of the difference between what may lie under two maxima of a pulse.
+    pub(crate) fn difference_under(&self, pulse: &Pulse, [one, other]: [f64; 2]) -> f64 {
+        let apart = (one - other).abs().min(2.0 * FOOT * pulse.sides_samples.0);
+        (self.fall_under(pulse, one.min(other)) * apart).abs()
+    }
+
     /// Fall, a sample, of what may lie under a pulse at its maximum.
     ///
     /// Under the wall's pulse it is the sensor bead's signal, from what is there before the pulse
@@ -45,17 +51,14 @@ impl ChannelView<'_> {
         if !self.summed || foot <= length {
             return 0.0;
         }
-        let there = self.beyond_noise(foot - length, foot);
+        let [there, before, earlier] = [0.0, 1.0, 2.0].map(|lengths| {
+            let end = foot - lengths * length;
+            self.beyond_noise(end - length, end)
+        });
         if let Some(wall) = self.wall {
             return self.wall_fall(pulse, wall as f64, foot, there) / (time - foot);
         }
-        // What falls quickly before the foot has gone by the maximum.
-        let before = self.beyond_noise(foot - 2.0 * length, foot - length);
-        let steps = (time - foot) / length;
-        let left = match there > 0.0 && before > there {
-            true => (there / before).powf(0.5 * steps),
-            false => 1.0,
-        };
+        let left = left_of([earlier, before, there], (time - foot) / length);
         let (there, asymmetry) = (left * there, pulse.asymmetry());
         there * (asymmetry / rise + (1.0 - asymmetry) / (time - foot))
     }
@@ -95,4 +98,15 @@ impl ChannelView<'_> {
         let count = heights.len() as f64;
         (heights.iter().sum::<f64>() / count, count)
     }
+}
+
+/// What is left of a height after so many steps of a stretch, from its means in the last three: what
+/// falls or rises quickly has gone by as much, and what has just had a maximum falls as a bell.
+fn left_of([earlier, before, there]: [f64; 3], steps: f64) -> f64 {
+    if there <= 0.0 || before <= 0.0 {
+        return 1.0;
+    }
+    let growth = (there / before).ln();
+    let bend = if earlier > 0.0 { (growth - (before / earlier).ln()).min(0.0) } else { 0.0 };
+    (0.5 * steps * (-growth.abs()).min(growth + 0.5 * bend * steps)).exp()
 }
