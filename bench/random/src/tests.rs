@@ -54,8 +54,8 @@ fn times_of_flight_of_the_paper_s_rows_agree_with_other_integrations() {
 }
 
 /// Rows on which program and reference agreed when it was made, with the reference's times:
-/// `target/release/hertzchain-random 70 --sample > bench/random/sample.csv`. The last three have maxima
-/// that are narrower than any step, far fainter than the pulse, or hardly any.
+/// `target/release/hertzchain-random 70 --sample > bench/random/sample.csv`. The last five have maxima
+/// that are narrower than any step, far fainter than the pulse, or hardly any, or forces that are cut.
 const SAMPLE: &str = include_str!("../sample.csv");
 
 /// Relative error of a shot's times of flight beside the reference's.

@@ -317,6 +317,13 @@ impl Signal {
                 inside.push(maximum);
             }
         }
+        let on_a_rise = start_slope > 0.0 && end_slope > 0.0 && inside.is_empty();
+        for at in piece.sharp_falls(self.sensor).into_iter().flatten().filter(|_| on_a_rise) {
+            if let Some((maximum, dip)) = sharp_maximum_before(piece, self.sensor, at, floor) {
+                self.keep(maximum);
+                self.lowest = self.lowest.min(dip);
+            }
+        }
         self.keep_inside(stretch, inside);
         self.before = Some((stretch.end_s(), end, end_slope));
         let dip = JUMP * self.largest;
@@ -416,11 +423,28 @@ fn sharp_maximum(
     let values = (0..SHARPEST).map(|halvings| (value(at(halvings)), halvings));
     let (most, highest) = values.max_by(|one, two| one.0.total_cmp(&two.0))?;
     let dip = value(from);
-    if highest == 0 || most <= dip + floor {
-        return None;
-    }
-    // Golden section: the rate of so narrow a maximum is not known.
-    let (mut low, mut high) = (at(highest + 1), at(highest - 1));
+    let is_one = highest > 0 && most > dip + floor;
+    is_one.then(|| (dip, highest_between(piece, sensor, at(highest + 1), at(highest - 1))))
+}
+
+/// The maximum of a step before a signal falls with infinite slope, and the value to which it falls.
+fn sharp_maximum_before(
+    piece: &Piece<'_>,
+    sensor: Sensor,
+    fall: f64,
+    floor: f64,
+) -> Option<(Maximum, f64)> {
+    let at = |halvings: i32| fall * (1.0 - 0.5_f64.powi(halvings));
+    let values = (0..SHARPEST).map(|halvings| (piece.signal(sensor, at(halvings)), halvings));
+    let (most, highest) = values.max_by(|one, two| one.0.total_cmp(&two.0))?;
+    let dip = piece.signal(sensor, fall);
+    let is_one = highest > 0 && most > dip + floor;
+    is_one.then(|| (highest_between(piece, sensor, at(highest - 1), at(highest + 1)), dip))
+}
+
+/// A maximum by golden section: the rate of a narrow one is not known.
+fn highest_between(piece: &Piece<'_>, sensor: Sensor, mut low: f64, mut high: f64) -> Maximum {
+    let value = |theta: f64| piece.signal(sensor, theta);
     let share = 0.5 * (5.0_f64.sqrt() - 1.0);
     for _ in 0..30 {
         let (left, right) = (high - share * (high - low), low + share * (high - low));
@@ -430,7 +454,7 @@ fn sharp_maximum(
         }
     }
     let theta = 0.5 * (low + high);
-    Some((dip, Maximum { time_s: piece.time_s(theta), value: value(theta) }))
+    Maximum { time_s: piece.time_s(theta), value: value(theta) }
 }
 
 #[cfg(test)]

@@ -147,6 +147,17 @@ impl Piece<'_> {
         })
     }
 
+    /// Where in the step each contact that a sensor shows begins to be released: some laws' forces
+    /// fall there with an infinite slope in rate.
+    pub(crate) fn sharp_falls(&self, sensor: Sensor) -> [Option<f64>; 3] {
+        self.closed_contacts(sensor).map(|contact| {
+            let contact = contact?;
+            let approach = |theta: f64| -self.overlap(contact, theta).1;
+            let turns = approach(0.0) < 0.0 && approach(1.0) > 0.0;
+            turns.then(|| bracketed_root(approach, 0.0, 1.0, 1e-13))
+        })
+    }
+
     /// Whether a contact is on the long step.
     fn is_slow(&self, contact: usize) -> bool {
         self.slow.is_some_and(|slow| slow.holds_contact(contact))
@@ -312,15 +323,36 @@ impl Piece<'_> {
         rise / (2.0 * step)
     }
 
+    /// Dynamic force of a contact in N, cut where it may not pull: a step that ends where a contact
+    /// opens passes, shortly before, where its force is cut.
+    fn seen_force(&self, contact: usize, theta: f64) -> f64 {
+        let force = self.force(contact, theta);
+        match self.system.tension {
+            Tension::Clipped => force.max(-self.system.static_force_n[contact]),
+            Tension::Allowed => force,
+        }
+    }
+
+    fn seen_force_rate(&self, contact: usize, theta: f64) -> f64 {
+        let least = -self.system.static_force_n[contact];
+        match self.system.tension {
+            Tension::Clipped if self.force(contact, theta) < least => 0.0,
+            _ => self.force_rate(contact, theta),
+        }
+    }
+
     /// A sensor's signal.
     pub fn signal(&self, sensor: Sensor, theta: f64) -> f64 {
         match sensor {
-            Sensor::Bead(n) => 0.5 * (self.force(self.before(n), theta) + self.force(n, theta)),
-            Sensor::Contact(c) => self.force(c, theta),
+            Sensor::Bead(n) => {
+                0.5 * (self.seen_force(self.before(n), theta) + self.seen_force(n, theta))
+            }
+            Sensor::Contact(c) => self.seen_force(c, theta),
             Sensor::Position(i) => self.body(i, theta).0,
             Sensor::Velocity(i) => self.body(i, theta).1,
             Sensor::BeadPlusWall(n) => {
-                self.signal(Sensor::Bead(n), theta) + self.force(self.system.contacts() - 1, theta)
+                self.signal(Sensor::Bead(n), theta)
+                    + self.seen_force(self.system.contacts() - 1, theta)
             }
         }
     }
@@ -329,14 +361,14 @@ impl Piece<'_> {
     pub(crate) fn signal_rate(&self, sensor: Sensor, theta: f64) -> f64 {
         match sensor {
             Sensor::Bead(n) => {
-                0.5 * (self.force_rate(self.before(n), theta) + self.force_rate(n, theta))
+                0.5 * (self.seen_force_rate(self.before(n), theta) + self.seen_force_rate(n, theta))
             }
-            Sensor::Contact(c) => self.force_rate(c, theta),
+            Sensor::Contact(c) => self.seen_force_rate(c, theta),
             Sensor::Position(i) => self.body(i, theta).1,
             Sensor::Velocity(i) => self.acceleration(i, theta),
             Sensor::BeadPlusWall(n) => {
                 self.signal_rate(Sensor::Bead(n), theta)
-                    + self.force_rate(self.system.contacts() - 1, theta)
+                    + self.seen_force_rate(self.system.contacts() - 1, theta)
             }
         }
     }
