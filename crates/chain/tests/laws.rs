@@ -22,7 +22,7 @@ fn sample(row: &hertzchain_chain::laws::Row) -> Arc<dyn Law> {
         .info
         .parameters
         .iter()
-        .filter(|p| p.source == Source::Required)
+        .filter(|p| matches!(p.source, Source::Required | Source::Liquid))
         .map(|p| (p.name, value(p)))
         .collect();
     row.build(&given).unwrap()

@@ -39,7 +39,8 @@ fn damping() -> impl Strategy<Value = Arc<dyn Law>> {
             ("damping_linear", _) => 4.0 * size,
             _ => 50.0 * size,
         };
-        let required = row.info.parameters.iter().filter(|p| p.source == Source::Required);
+        let required = row.info.parameters.iter();
+        let required = required.filter(|p| matches!(p.source, Source::Required | Source::Liquid));
         let given: Vec<_> = required.map(|p| (p.name, value(p.name))).collect();
         row.build(&given).unwrap()
     })

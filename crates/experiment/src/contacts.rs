@@ -4,6 +4,7 @@ use crate::bodies::{BeadGroup, Materials};
 use crate::document::{Node, TomlValue};
 use crate::keys::ValueLimits;
 use crate::report::{FileProblem, nearest_word};
+use crate::settings::Liquid;
 use crate::values::{ExpectedQuantity, TableView, Units, whole};
 use hertzchain_chain::laws::{LAWS, Law, LawError, Nature, Parameter, Row, Source, find};
 use std::ops::Range;
@@ -44,6 +45,10 @@ pub struct SectionSpec {
 
 /// Key of the contact that a law's K or A belongs to.
 pub(crate) const CONTACT: &str = "contact";
+
+/// Keys of what a liquid gives to a law.
+const VISCOSITY: &str = "viscosity";
+const PRESSURE_VISCOSITY: &str = "pressure_viscosity";
 
 /// Key of every stiffness that materials or other laws may set.
 const STIFFNESS: &str = "stiffness";
@@ -142,8 +147,8 @@ pub(crate) fn check_law(node: &Node, units: Units) -> Vec<FileProblem> {
     problems
 }
 
-/// One member of `laws`, already checked.
-fn law(node: &Node, units: Units) -> Result<LawSpec, FileProblem> {
+/// One member of `laws`, already checked; the liquid gives what is its own.
+fn law(node: &Node, units: Units, liquid: Option<&Liquid>) -> Result<LawSpec, FileProblem> {
     let row = row_of(node)?;
     let contact = contact_of(node)?;
     let (mut given, mut references) = (Vec::new(), Vec::new());
@@ -154,8 +159,37 @@ fn law(node: &Node, units: Units) -> Result<LawSpec, FileProblem> {
             references.extend(own.map(|contact| (parameter.name, contact)));
         }
     }
+    if row.info.parameters.iter().any(|p| p.source == Source::Liquid) {
+        fill_oil(row, node, (units, liquid), &mut given)?;
+    }
     let span = node.span.clone();
     Ok(LawSpec { row, given, references, span })
+}
+
+/// Fills in what a law leaves to the file's liquid: η, and α, which an oil with that η must
+/// state, as a film of oil without it is another one.
+fn fill_oil(
+    row: &Row,
+    node: &Node,
+    (units, liquid): (Units, Option<&Liquid>),
+    given: &mut Vec<(&'static str, f64)>,
+) -> Result<(), FileProblem> {
+    let viscosity = liquid.and_then(Liquid::dynamic_viscosity_pa_s);
+    let thickening = liquid.and_then(|liquid| liquid.pressure_viscosity_per_pa);
+    let from_liquid = node.get(VISCOSITY).is_none();
+    let wanted = [(VISCOSITY, viscosity, true), (PRESSURE_VISCOSITY, thickening, from_liquid)];
+    for (name, value, is_needed) in wanted {
+        let mut parameters = row.info.parameters.iter();
+        let open = parameters.find(|p| p.name == name && node.get(name).is_none());
+        match (open, value) {
+            (Some(_), Some(value)) => given.push((name, value)),
+            (Some(parameter), None) if is_needed => {
+                return Err(missing(parameter, row, node, units).help(Liquid::SUFFICES));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// The contact that a law's K or A belongs to, where the file names one.
@@ -271,10 +305,11 @@ pub(crate) fn read(
     root: &TableView<'_>,
     materials: &Materials,
     groups: &[BeadGroup],
+    liquid: Option<&Liquid>,
 ) -> Result<Vec<SectionSpec>, FileProblem> {
     let beads = groups.iter().map(BeadGroup::count).sum();
     let tables = root.tables("contacts");
-    let section = |table: &TableView<'_>| section(table, materials, beads);
+    let section = |table: &TableView<'_>| section(table, materials, beads, liquid);
     let mut sections: Vec<SectionSpec> = tables.iter().map(section).collect::<Result<_, _>>()?;
     if sections.is_empty() {
         sections.push(hertz(root));
@@ -314,6 +349,7 @@ fn section(
     table: &TableView<'_>,
     materials: &Materials,
     beads: usize,
+    liquid: Option<&Liquid>,
 ) -> Result<SectionSpec, FileProblem> {
     let from = table.count("from")?.unwrap_or(0);
     let to = table.count("to")?;
@@ -325,7 +361,7 @@ fn section(
         return Err(table.problem("to", message, label));
     }
     let members = table.node.list("laws").iter();
-    let laws = members.map(|member| law(member, table.units));
+    let laws = members.map(|member| law(member, table.units, liquid));
     let laws: Vec<LawSpec> = laws.collect::<Result<_, _>>()?;
     each_once(&laws)?;
     for law in &laws {

@@ -440,6 +440,8 @@ static EXAMPLES: &[Preset] = files![
     "newtons-cradle",
 ];
 
+static FILMS: &[Preset] = files!["pump-film", "gear-film", "motor-film"];
+
 static CAMPAIGNS: &[Preset] = files!["paper"];
 
 /// The paper's chains.
@@ -452,6 +454,11 @@ pub const fn examples() -> &'static [Preset] {
     EXAMPLES
 }
 
+/// The paper's row with films of its oils, by their own properties: for the adaptive loop alone.
+pub const fn film_presets() -> &'static [Preset] {
+    FILMS
+}
+
 /// Campaigns of a rig: chains, speeds, shots and instruments.
 pub const fn campaigns() -> &'static [Preset] {
     CAMPAIGNS
@@ -462,7 +469,7 @@ pub const fn campaigns() -> &'static [Preset] {
 /// # Errors
 /// An unknown name, with those that exist and the nearest of them.
 pub fn preset(name: &str) -> Result<Experiment, UnknownName> {
-    let all = || PRESETS.iter().chain(EXAMPLES).chain(CAMPAIGNS);
+    let all = || [PRESETS, EXAMPLES, FILMS, CAMPAIGNS].into_iter().flatten();
     let found = all().find(|preset| preset.name == name);
     let open = |p: &Preset| Experiment::from_text(&format!("{}.toml", p.name), p.text).ok();
     let experiment = found.and_then(open);

@@ -190,6 +190,12 @@ const VISCOSITY: KeyKind = Scaled("Pa s", ValueLimits::closed(0.0, 1e24, "from 0
 pub(crate) const SPREAD: KeyKind = Quantity("1", ValueLimits::closed(0.0, 0.1, "from 0 to 0.1"));
 pub(crate) const VOLTAGE: KeyKind = Quantity("V", ValueLimits::ANY);
 
+/// Where ASTM D341 holds.
+pub(crate) const OIL: KeyKind =
+    Quantity("m^2/s", ValueLimits::closed(2e-6, 20.0, "from 2 cSt to 2e7 cSt"));
+pub(crate) const OIL_TEMPERATURE: ValueLimits =
+    ValueLimits::closed(223.15, 473.15, "from -50 degC to 200 degC");
+
 /// Longest chain: what fits into memory with all that a shot needs.
 pub(crate) const MOST_BEADS: i64 = 2_000_000;
 
@@ -449,7 +455,7 @@ static SOLVER: Fields = table! { "[solver]";
 static CASE: Fields = table! { "[[campaign.cases]]";
     name(Always): Text, "name of the case, in names of files";
     contacts: Tables(&SECTION), "sections of contacts in place of the file's own";
-    liquid: Table(&Liquid::FIELDS), "liquid in place of the file's own, for reports";
+    liquid: Table(&Liquid::FIELDS), "liquid in place of the file's own";
 };
 
 const SEED: KeyKind = Count { least: 0, most: 1 << 52 };
@@ -488,7 +494,7 @@ pub(crate) static ROOT: Fields = table! { "an experiment file";
     initial: Tables(&INITIAL), "deviations of beads from rest";
     sensors: Table(&SENSORS), "where the chain is watched";
     solver: Table(&SOLVER), "how the motion is computed";
-    liquid: Table(&Liquid::FIELDS), "the liquid of wet contacts, for reports";
+    liquid: Table(&Liquid::FIELDS), "the liquid of wet contacts";
     rig: Table(&RIG), "what stands around the chain, for drawings and reports; computes nothing";
     campaign: Table(&CAMPAIGN), "what a rig does of itself, shot after shot, and the numbers of its parts";
     reading: Table(&READING), "choices that the paper leaves open";

@@ -63,7 +63,9 @@ pub mod units;
 pub use self::{
     assemble::Reference,
     contacts::{LawSpec, SectionSpec},
-    experiment::{Experiment, OpenError, Preset, campaigns, examples, preset, presets},
+    experiment::{
+        Experiment, OpenError, Preset, campaigns, examples, film_presets, preset, presets,
+    },
     paths::{NamedNumber, PathError},
     reading::{Pick, Reading, Switch},
     report::{Finding, Mistakes, UnknownName, Warning},

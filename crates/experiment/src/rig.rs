@@ -352,6 +352,7 @@ pub(crate) fn cases(
     root: &TableView<'_>,
     materials: &Materials,
     groups: &[BeadGroup],
+    liquid: Option<&Liquid>,
 ) -> Result<Vec<CaseSpec>, FileProblem> {
     let mut cases: Vec<CaseSpec> = Vec::new();
     let tables = root.table("campaign").map(|table| table.tables("cases"));
@@ -366,12 +367,15 @@ pub(crate) fn cases(
             let message = format!("there are two cases with the name `{name}`");
             return Err(table.problem("name", message, "expected another name"));
         }
-        let own = table.has("contacts");
-        let sections = own.then(|| contacts::read(&table, materials, groups));
+        let own = Liquid::read_from(&table)?;
+        // Another liquid changes the file's own contacts too.
+        let holder = if table.has("contacts") { Some(&table) } else { own.as_ref().map(|_| root) };
+        let wet_by = own.as_ref().or(liquid);
+        let sections = holder.map(|holder| contacts::read(holder, materials, groups, wet_by));
         cases.push(CaseSpec {
             name: name.to_owned(),
             sections: sections.transpose()?,
-            liquid: Liquid::read_from(&table)?,
+            liquid: own,
         });
     }
     Ok(cases)

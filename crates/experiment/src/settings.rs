@@ -1,7 +1,9 @@
 //! The ends of the chain, deviations from rest, sensors, solver and liquid of a file.
 
 use crate::bodies::Materials;
-use crate::keys::{MOST_BEADS, SPEED, Text, choice, positive};
+use crate::keys::{
+    MOST_BEADS, OIL, OIL_TEMPERATURE, Quantity, SPEED, Text, choice, not_negative, positive,
+};
 use crate::report::{FileProblem, brief};
 use crate::values::{TableView, Units, record};
 use hertzchain_chain::{Gap, Initial, Motion, Push};
@@ -55,24 +57,70 @@ impl Solver {
     }
 }
 
+/// Room temperature in K.
+const ROOM_K: f64 = 298.15;
+
 record! {
-    /// A liquid, for reports: no law uses it.
+    /// A liquid: its viscosity at its temperature, for the laws of films and for reports.
     Liquid "[liquid]"
     name: String = name "liquid".to_owned(), Text, "name of the liquid";
     kinematic_viscosity_m2_s: Option<f64> = kinematic_viscosity None, positive("m^2/s"), "kinematic viscosity";
-    density_kg_m3: Option<f64> = density None, positive("kg/m^3"), "density";
+    kinematic_viscosity_40_m2_s: Option<f64> = kinematic_viscosity_40 None, OIL, "the same at 40 °C, by ASTM D341 with that at 100 °C";
+    kinematic_viscosity_100_m2_s: Option<f64> = kinematic_viscosity_100 None, OIL, "the same at 100 °C";
+    temperature_k: f64 = temperature ROOM_K, Quantity("K", OIL_TEMPERATURE), "temperature; default 25 degC";
+    density_kg_m3: Option<f64> = density None, positive("kg/m^3"), "density, with two viscosities at 40 °C";
+    pressure_viscosity_per_pa: Option<f64> = pressure_viscosity None, not_negative("1/Pa"), "pressure–viscosity coefficient α";
 }
 
 impl Liquid {
-    /// Dynamic viscosity in Pa s.
+    /// Advice where a law needs an oil.
+    pub(crate) const SUFFICES: &str = "or give the oil in [liquid]: `kinematic_viscosity_40`, `kinematic_viscosity_100`, \
+         `density` and `pressure_viscosity` (0 for an oil that pressure does not thicken)";
+
+    /// Dynamic viscosity in Pa s at the liquid's temperature T.
+    ///
+    /// With ν at 40 and 100 °C it is ρ ν(T): log log(ν + 0.7), ν in mm²/s, is linear in log T
+    /// [Walther1931, ASTM D341], and ρ, given at 40 °C, falls by 6.5·10⁻⁴ of itself a kelvin. Else it is the one ν times ρ.
     pub fn dynamic_viscosity_pa_s(&self) -> Option<f64> {
-        Some(self.kinematic_viscosity_m2_s? * self.density_kg_m3?)
+        /// Of mineral oils and poly-α-olefins, 1/K.
+        const EXPANSION: f64 = 6.5e-4;
+        let density = self.density_kg_m3?;
+        let pair = self.kinematic_viscosity_40_m2_s.zip(self.kinematic_viscosity_100_m2_s);
+        let found = match pair {
+            None => self.kinematic_viscosity_m2_s? * density,
+            Some((at40, at100)) => {
+                let level = |m2_s: f64| (1e6 * m2_s + 0.7).log10().log10();
+                let fall = (level(at100) - level(at40)) / (373.15_f64 / 313.15).log10();
+                let here = level(at40) + fall * (self.temperature_k / 313.15).log10();
+                let mm2_s = 10f64.powf(10f64.powf(here)) - 0.7;
+                1e-6 * mm2_s * density * (1.0 - EXPANSION * (self.temperature_k - 313.15))
+            }
+        };
+        (found > 0.0 && found.is_finite()).then_some(found)
     }
 
     /// The liquid of a file or of a case.
     pub(crate) fn read_from(root: &TableView<'_>) -> Result<Option<Self>, FileProblem> {
-        let table = root.table("liquid");
-        table.map(|table| Self::read(Some(&table))).transpose()
+        let Some(table) = root.table("liquid") else { return Ok(None) };
+        let liquid = Self::read(Some(&table))?;
+        let both = ["kinematic_viscosity_40", "kinematic_viscosity_100"];
+        let (message, key) = match both.map(|key| table.has(key)) {
+            [true, true] if table.has("kinematic_viscosity") => {
+                ("this viscosity has no temperature, and two others have", "kinematic_viscosity")
+            }
+            [true, true] if liquid.thickens_with_heat() => {
+                ("this oil is not thinner at 100 °C than at 40 °C", both[1])
+            }
+            [true, false] => ("the viscosity at 100 °C is missing", both[0]),
+            [false, true] => ("the viscosity at 40 °C is missing", both[1]),
+            _ => return Ok(Some(liquid)),
+        };
+        let label = "expected `kinematic_viscosity` alone, or the larger at 40 °C and the smaller at 100 °C";
+        Err(table.problem(key, message, label))
+    }
+
+    fn thickens_with_heat(&self) -> bool {
+        self.kinematic_viscosity_100_m2_s >= self.kinematic_viscosity_40_m2_s
     }
 }
 

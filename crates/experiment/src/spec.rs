@@ -75,6 +75,7 @@ impl Spec {
         let load = loads.into_iter().find(|key| root.has(key));
         let suspension = root.table("suspension");
         let solver = root.table("solver");
+        let liquid = Liquid::read_from(root)?;
         let in_solver = |key| solver.map_or(root.span(), |t| t.span_of(key));
         let spec = Self {
             title: root.text("title").unwrap_or("untitled").to_owned(),
@@ -83,7 +84,7 @@ impl Spec {
             push: settings::push(root)?,
             load_span: load.map_or(0..0, |key| root.span_of(key)),
             far_span: root.span_of("far_end"),
-            sections: contacts::read(root, &materials, &groups)?,
+            sections: contacts::read(root, &materials, &groups, liquid.as_ref())?,
             gaps: settings::gaps(root, contact_ends(&near, &far, count))?,
             initial: settings::initial(root)?,
             incline_rad: track("incline")?.unwrap_or(0.0),
@@ -99,11 +100,11 @@ impl Spec {
             solver_span: solver.map(|t| t.span()),
             step_span: in_solver("step"),
             duration_span: in_solver("duration"),
-            liquid: Liquid::read_from(root)?,
             rig: Rig::read(root)?,
             friction_coefficient: track("friction")?.unwrap_or(FRICTION),
             campaign: Campaign::read(root, near.speed_m_s())?,
-            cases: rig::cases(root, &materials, &groups)?,
+            cases: rig::cases(root, &materials, &groups, liquid.as_ref())?,
+            liquid,
             near,
             far,
             reading: Reading::read(root),

@@ -38,15 +38,15 @@ impl UnitError {
     }
 }
 
-/// Powers of metre, kilogram, second, radian and ampere.
+/// Powers of metre, kilogram, second, radian, ampere and kelvin.
 ///
 /// The radian counts as a base unit here, so that an angle without its unit,
 /// or a frequency in rad/s, is a mistake and not a factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dimension([f64; 5]);
+pub struct Dimension([f64; 6]);
 
 /// Base units in the order in which they are printed, with their index.
-const BASE: [(&str, usize); 5] = [("kg", 1), ("m", 0), ("s", 2), ("rad", 3), ("A", 4)];
+const BASE: [(&str, usize); 6] = [("kg", 1), ("m", 0), ("s", 2), ("rad", 3), ("A", 4), ("K", 5)];
 
 /// Common dimensions: name, SI unit, an example.
 static NAMES: &[(&str, &str, &str)] = &[
@@ -75,11 +75,13 @@ static NAMES: &[(&str, &str, &str)] = &[
     ("a charge", "C", "100 pC"),
     ("a charge sensitivity", "C/N", "20 pC/N"),
     ("a charge amplification", "V/C", "1 mV/pC"),
+    ("a temperature", "K", "25 degC"),
+    ("a pressure–viscosity coefficient", "1/Pa", "16 1/GPa"),
 ];
 
 impl Dimension {
     /// Plain numbers.
-    pub const NONE: Self = Self([0.0; 5]);
+    pub const NONE: Self = Self([0.0; 6]);
 
     fn times(self, other: Self, power: f64) -> Self {
         let mut out = self.0;
@@ -194,12 +196,17 @@ impl Unit {
 pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
     let (number, length) = Decimal::read(text)?;
     let unit_text = text.get(length..).unwrap_or_default();
+    // A scale with another zero is no factor: it stands alone.
+    let (unit_text, zero) = match unit_text.trim() {
+        "degC" | "°C" => ("K", 273.15),
+        _ => (unit_text, 0.0),
+    };
     let unit = match unit_text.trim().is_empty() {
         true => Unit::ONE,
         false => parse_unit(unit_text)
             .map_err(|e| UnitError::new(e.what, e.at.start + length..e.at.end + length))?,
     };
-    let value = unit.convert(&number);
+    let value = unit.convert(&number) + zero;
     if !value.is_finite() {
         let what = format!("`{}` is too large a number", text.trim());
         return Err(UnitError::new(what, 0..text.len()));
@@ -530,6 +537,7 @@ struct Symbol {
     factor: f64,
     tens: i8,
     powers: [i8; 5],
+    kelvin: i8,
 }
 
 /// A symbol whose size is a power of ten, and which may have a prefix.
@@ -538,7 +546,7 @@ const fn si(text: &'static str, tens: i8, powers: [i8; 5]) -> Symbol {
 }
 
 const fn other(text: &'static str, factor: f64, tens: i8, powers: [i8; 5]) -> Symbol {
-    Symbol { text, prefixable: false, factor, tens, powers }
+    Symbol { text, prefixable: false, factor, tens, powers, kelvin: 0 }
 }
 
 const LENGTH: [i8; 5] = [1, 0, 0, 0, 0];
@@ -566,6 +574,7 @@ static SYMBOLS: &[Symbol] = &[
     si("A", 0, [0, 0, 0, 0, 1]),
     si("C", 0, [0, 0, 1, 0, 1]),
     si("V", 0, [2, 1, -3, 0, -1]),
+    Symbol { kelvin: 1, ..si("K", 0, [0; 5]) },
     other("t", 1.0, 3, [0, 1, 0, 0, 0]),
     other("in", 254.0, -4, LENGTH),
     other("micron", 1.0, -6, LENGTH),
@@ -594,8 +603,9 @@ fn find_symbol(text: &str) -> Option<Unit> {
             Some((symbol, *tens))
         })
     })?;
+    let [m, kg, s, rad, a] = symbol.powers.map(f64::from);
     Some(Unit {
-        dimension: Dimension(symbol.powers.map(f64::from)),
+        dimension: Dimension([m, kg, s, rad, a, f64::from(symbol.kelvin)]),
         tens: f64::from(symbol.tens) + f64::from(tens),
         up: symbol.factor,
         down: 1.0,

@@ -4,6 +4,7 @@
 mod any_input;
 mod campaign;
 mod mistakes;
+mod oils;
 mod one_mistake;
 mod paths;
 mod presets;

@@ -1,7 +1,7 @@
 //! No input makes the reader panic.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use crate::{Experiment, Reading, examples, presets};
+use crate::{Experiment, Reading, examples, film_presets, presets};
 use proptest::prelude::*;
 
 /// Reads a text and goes on as far as it can.
@@ -31,7 +31,7 @@ fn exercise(text: &str) -> Result<(), TestCaseError> {
 }
 
 fn files() -> Vec<&'static str> {
-    presets().iter().chain(examples()).map(|file| file.text).collect()
+    presets().iter().chain(film_presets()).chain(examples()).map(|file| file.text).collect()
 }
 
 /// Words that belong into experiment files, and some that do not.

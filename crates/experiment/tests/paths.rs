@@ -1,12 +1,12 @@
 //! Named numbers: found, read, set.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use crate::{Experiment, PathError, examples, preset, presets};
+use crate::{Experiment, PathError, examples, film_presets, preset, presets};
 use hertzchain_chain::{BeadPair, Start};
 
 #[test]
 fn every_number_of_every_file_is_found_by_its_path_and_can_be_set_to_itself() {
-    for file in presets().iter().chain(examples()) {
+    for file in presets().iter().chain(film_presets()).chain(examples()) {
         let experiment = preset(file.name).unwrap();
         let numbers = experiment.numbers();
         assert!(numbers.len() > 5, "{}: {numbers:?}", file.name);

@@ -1,7 +1,7 @@
 //! The files that come with the program, against the numbers they stand for.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use crate::{examples, preset, presets};
+use crate::{examples, film_presets, preset, presets};
 use hertzchain_chain::{Bead, BeadPair, Chain, FarEnd, Material, Start};
 
 fn chain(name: &str, speed_m_s: Option<f64>) -> Chain {
@@ -19,7 +19,7 @@ fn pair(material: Material, radius_m: f64, mass_kg: f64) -> BeadPair {
 
 #[test]
 fn every_file_parses_without_warnings_and_has_its_name() {
-    for file in presets().iter().chain(examples()) {
+    for file in presets().iter().chain(film_presets()).chain(examples()) {
         let experiment = preset(file.name).unwrap();
         let (chain, warnings) = experiment.chain(None).unwrap();
         assert!(!chain.beads.is_empty());

@@ -1,7 +1,7 @@
 //! The JSON Schema describes the files that the program reads.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use crate::{Experiment, examples, presets, schema};
+use crate::{Experiment, examples, film_presets, presets, schema};
 use hertzchain_chain::laws::LAWS;
 use serde_json::{Value, json};
 
@@ -105,7 +105,7 @@ fn json_of(text: &str) -> Value {
 
 #[test]
 fn every_file_conforms() {
-    for file in presets().iter().chain(examples()) {
+    for file in presets().iter().chain(film_presets()).chain(examples()) {
         let fits = conforms(&json_of(file.text), &schema());
         assert!(fits.is_ok(), "{}: {fits:?}", file.name);
     }

@@ -39,6 +39,11 @@ fn powers_of_ten_are_exact() {
     assert_eq!(value("2 1/s"), 2.0);
     assert_eq!(value("1 ml"), 1e-6);
     assert_eq!(value("12 dyn/cm"), 12e-3);
+    assert_eq!(value("25 degC"), 298.15);
+    assert_eq!(value("0 °C"), 273.15);
+    // A difference, and a scale that is no factor.
+    assert_eq!(value("2 K/s"), 2.0);
+    assert!(mistake("2 degC/s").contains("not a known unit"), "{}", mistake("2 degC/s"));
 }
 
 #[test]

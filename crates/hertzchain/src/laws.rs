@@ -40,7 +40,7 @@ fn as_json(info: &LawInfo) -> Json {
     let parameter = |p: &Parameter| {
         let value = match p.source {
             Source::Default(value) => json!(value),
-            Source::Required | Source::Materials | Source::Hertz => Json::Null,
+            Source::Required | Source::Liquid | Source::Materials | Source::Hertz => Json::Null,
         };
         json!({
             "name": p.name,

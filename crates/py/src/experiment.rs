@@ -326,7 +326,8 @@ impl Experiment {
 ///     Titles by name.
 #[pyfunction]
 pub(crate) fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-    let lists = [experiment::presets(), experiment::examples(), experiment::campaigns()];
+    use experiment::{campaigns, examples, film_presets};
+    let lists = [experiment::presets(), film_presets(), examples(), campaigns()];
     lists.into_iter().flatten().map(|preset| (preset.name, preset.title())).into_py_dict(py)
 }
 

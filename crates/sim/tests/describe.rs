@@ -1,7 +1,7 @@
 //! What is understood of an experiment, against numbers computed by hand.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
-use hertzchain_experiment::{Experiment, examples, preset, presets};
+use hertzchain_experiment::{Experiment, examples, film_presets, preset, presets};
 use hertzchain_sim::{Group, Plan, Value, describe, describe_theory, shoot};
 
 fn described(experiment: &Experiment) -> Vec<Group> {
@@ -109,7 +109,7 @@ fn finite(value: &Value) -> bool {
 
 #[test]
 fn every_preset_and_example_can_be_described_without_nonsense() {
-    for file in presets().iter().chain(examples()) {
+    for file in presets().iter().chain(film_presets()).chain(examples()) {
         let experiment = preset(file.name).unwrap();
         let (chain, _) = experiment.chain(None).unwrap();
         let theory = describe_theory(&experiment, &chain).unwrap();
@@ -121,7 +121,7 @@ fn every_preset_and_example_can_be_described_without_nonsense() {
 
 #[test]
 fn rows_of_a_theory_have_names_of_their_own() {
-    for file in presets().iter().chain(examples()) {
+    for file in presets().iter().chain(film_presets()).chain(examples()) {
         let experiment = preset(file.name).unwrap();
         let (chain, _) = experiment.chain(None).unwrap();
         for group in describe_theory(&experiment, &chain).unwrap() {

@@ -45,7 +45,7 @@ impl Term<4> for FilmEntrained {
                 name: "viscosity",
                 unit: "Pa s",
                 meaning: "viscosity η of the oil at ambient pressure",
-                source: Source::Required,
+                source: Source::Liquid,
                 least: 0.0,
             },
             Parameter {

@@ -50,6 +50,8 @@ pub enum Source {
     /// It is the stiffness K of the `elastic_hertz` beside this law, where a user
     /// gives that one; else it follows from materials and radii, as K does then.
     Hertz,
+    /// It is that of the file's liquid; without one the user must give it.
+    Liquid,
     /// A plain default.
     Default(f64),
 }
@@ -390,7 +392,7 @@ fn value_of(parameter: &Parameter, given: &[(&str, f64)]) -> Result<Option<f64>,
             parameter.unit, parameter.least
         )),
         None => match parameter.source {
-            Source::Required => {
+            Source::Required | Source::Liquid => {
                 Err(format!("needs `{name}` ({}, in {})", parameter.meaning, parameter.unit))
             }
             Source::Materials | Source::Hertz => Ok(None),

@@ -24,7 +24,7 @@ fn after(from: &str, to: &str) -> Finding {
     only(&DRY.replacen(from, to, 1))
 }
 
-fn only(text: &str) -> Finding {
+pub(crate) fn only(text: &str) -> Finding {
     let mistakes = Experiment::from_text("test.toml", text).unwrap_err();
     assert_eq!(mistakes.findings().len(), 1, "{mistakes}");
     mistakes.findings()[0].clone()
@@ -35,7 +35,7 @@ fn line_of(text: &str) -> usize {
 }
 
 /// Line, underlined text and words of a finding.
-fn check(finding: &Finding, line: usize, text: &str, words: &[&str]) {
+pub(crate) fn check(finding: &Finding, line: usize, text: &str, words: &[&str]) {
     assert_eq!(finding.line(), line, "{}", finding.one_line());
     assert_eq!(finding.text(), text, "{}", finding.one_line());
     assert_eq!(finding.file(), "test.toml");

@@ -1,7 +1,7 @@
 //! Numbers and their units.
 
 use super::{DRY, after, check, line_of, only};
-use crate::{Experiment, examples, preset, presets};
+use crate::{Experiment, examples, film_presets, preset, presets};
 
 #[test]
 fn a_wrong_dimension_names_the_expected_unit() {
@@ -118,7 +118,7 @@ fn a_message_repeats_what_the_user_wrote() {
 
 #[test]
 fn nan_and_infinities_are_refused_in_every_number_of_every_experiment() {
-    for file in presets().iter().chain(examples()) {
+    for file in presets().iter().chain(film_presets()).chain(examples()) {
         let experiment = Experiment::from_text(file.name, file.text).unwrap();
         for number in experiment.numbers() {
             for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

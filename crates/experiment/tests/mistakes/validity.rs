@@ -1,7 +1,7 @@
 //! Laws that are used beyond what they are for.
 
 use super::{DRY, check, line_of, refused};
-use crate::{Experiment, Warning, examples, presets};
+use crate::{Experiment, Warning, examples, film_presets, presets};
 use hertzchain_chain::laws::{LAWS, Nature, Row, Source};
 use hertzchain_chain::theory::two_body::ElasticCollision;
 use miette::Diagnostic;
@@ -173,7 +173,7 @@ fn lengths_without_unit_are_compared_with_no_radius() {
 
 #[test]
 fn files_that_come_along_use_their_laws_within_range() {
-    for file in presets().iter().chain(examples()) {
+    for file in presets().iter().chain(film_presets()).chain(examples()) {
         let experiment = Experiment::from_text(file.name, file.text).unwrap();
         let struck = experiment.speed_m_s().is_some();
         let speeds: &[Option<f64>] = match struck {

@@ -2,7 +2,9 @@
 
 use super::words::groups;
 use super::{Edit, Mistake, Refusal, edit, effort};
-use hertzchain_experiment::{Experiment, Preset, Units, campaigns, examples, presets as own};
+use hertzchain_experiment::{
+    Experiment, Preset, Units, campaigns, examples, film_presets, presets as own,
+};
 use hertzchain_sim::{describe, describe_theory};
 use serde_json::{Value as Json, json};
 
@@ -13,7 +15,8 @@ pub(super) fn presets() -> Json {
             json!({ "name": preset.name, "title": preset.title(), "kind": kind, "text": preset.text })
         })
     };
-    let others = reply("example", examples()).chain(reply("campaign", campaigns()));
+    let others = reply("example", film_presets()).chain(reply("example", examples()));
+    let others = others.chain(reply("campaign", campaigns()));
     reply("paper", own()).chain(others).collect()
 }
 

@@ -35,6 +35,14 @@ fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
     if let Some(material) = path.strip_suffix("bulk_viscosity") {
         return experiment.get(&format!("{material}shear_viscosity")).ok();
     }
+    if let Some((_, parameter)) = path.split_once(".film_entrained.") {
+        let liquid = experiment.liquid()?;
+        return match parameter {
+            "viscosity" => liquid.dynamic_viscosity_pa_s(),
+            "pressure_viscosity" => liquid.pressure_viscosity_per_pa,
+            _ => None,
+        };
+    }
     let reference = experiment.reference(path)?;
     reference.own_value.filter(|value| *value > 0.0)
 }

@@ -43,6 +43,7 @@ fn default(parameter: &Parameter) -> String {
         Source::Required => "required".to_owned(),
         Source::Materials => "default: from the materials".to_owned(),
         Source::Hertz => "default: the section's elastic_hertz, else the materials".to_owned(),
+        Source::Liquid => "default: of [liquid]".to_owned(),
         Source::Default(value) => format!("default: {value}"),
     }
 }

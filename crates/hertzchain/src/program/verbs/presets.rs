@@ -2,7 +2,7 @@
 
 use crate::program::arguments::Presets;
 use crate::program::{Failure, format, print};
-use hertzchain_experiment::{campaigns, examples, preset, presets};
+use hertzchain_experiment::{campaigns, examples, film_presets, preset, presets};
 
 pub(crate) fn run(arguments: &Presets) -> Result<(), Failure> {
     if let Some(name) = &arguments.name {
@@ -11,6 +11,7 @@ pub(crate) fn run(arguments: &Presets) -> Result<(), Failure> {
     }
     let heads = [
         ("The paper's chains", presets()),
+        ("The same with films of its oils, some seconds a shot", film_presets()),
         ("Examples", examples()),
         ("Campaigns, for `hertzchain campaign --preset NAME`", campaigns()),
     ];
