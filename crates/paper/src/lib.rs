@@ -3,6 +3,7 @@
 
 pub mod claims;
 pub mod figures;
+pub mod oil_films;
 pub mod readings;
 pub mod reproduce;
 pub mod rig_claims;

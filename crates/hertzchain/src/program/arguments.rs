@@ -135,4 +135,8 @@ pub(crate) struct Reproduce {
     /// rigs; a few minutes on two cores
     #[arg(long)]
     pub rig: bool,
+    /// Also put films of the paper's oils on its wet contacts, by the oils' own properties, and hold
+    /// their times against the paper's; some minutes on two cores
+    #[arg(long)]
+    pub film: bool,
 }

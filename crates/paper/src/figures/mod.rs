@@ -1,8 +1,10 @@
 //! The paper's figures and those of the claims about its rig.
 
+mod oil_films;
 pub(crate) mod rig;
 mod verdicts;
 
+pub use oil_films::oil_film_figure;
 pub use verdicts::rig_figures;
 
 use crate::claims::{Curve, Evidence, SHOTS_PER_POINT, SPEED_SCATTER_M_S, TofBranch};

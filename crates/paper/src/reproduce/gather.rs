@@ -203,7 +203,7 @@ fn lean_points(
 }
 
 /// The plan of a shot of a case.
-pub(super) fn plan(
+pub(crate) fn plan(
     experiment: &Experiment,
     speed_m_s: f64,
     accuracy: f64,

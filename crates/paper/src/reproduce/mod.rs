@@ -14,8 +14,9 @@ pub use self::{
     reproduction::{ReproduceOptions, Reproduction, reproduce},
 };
 pub(crate) use self::{
-    cases::{Cases, OILS, SPEEDS_M_S},
+    cases::{Cases, OILS, SPEEDS_M_S, failed},
     films::{Film, SignalShot},
-    gather::{Effort, Gathering, ShotCache, gather},
+    gather::{Effort, Gathering, ShotCache, gather, plan},
+    point::read_off,
     provenance::Provenance,
 };

@@ -91,7 +91,7 @@ pub(super) fn read_off_all(plan: &Plan, speed_m_s: f64, shot: &Shot) -> Vec<Shot
     flights.map(timed).collect()
 }
 
-pub(super) fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> ShotPoint {
+pub(crate) fn read_off(plan: &Plan, speed_m_s: f64, shot: &Shot) -> ShotPoint {
     let passage = shot.passage.as_ref().ok();
     let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let rebound = shot.rebound;

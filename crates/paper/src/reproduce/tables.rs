@@ -6,15 +6,15 @@ use crate::claims::{Curve, Evidence, ShotPoint, TofBranch};
 use hertzchain_chain::{BeadPair, Chain};
 use std::fmt::Write as _;
 
-struct TableText(String);
+pub(crate) struct TableText(pub(crate) String);
 
 impl TableText {
-    fn new(header: &str) -> Self {
+    pub(crate) fn new(header: &str) -> Self {
         Self(format!("{header}\n"))
     }
 
     /// Numbers with thirteen digits, what is not a number as an empty field.
-    fn row(&mut self, names: &[&str], speed_m_s: Option<f64>, numbers: &[f64]) {
+    pub(crate) fn row(&mut self, names: &[&str], speed_m_s: Option<f64>, numbers: &[f64]) {
         let mut fields: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
         fields.extend(speed_m_s.map(|speed| speed.to_string()));
         let number = |n: &f64| match n.is_finite() {

@@ -1,5 +1,6 @@
 //! `hertzchain reproduce`: everything in the paper.
 
+mod film;
 mod rig;
 
 use crate::program::arguments::Reproduce;
@@ -30,6 +31,9 @@ pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
     let mut text = summary(&computed, folder.path());
     if arguments.rig {
         text.push_str(&rig::run(&mut folder, &counter)?);
+    }
+    if arguments.film {
+        text.push_str(&film::run(&mut folder, &counter)?);
     }
     counter.finish();
     let names: Vec<&str> = folder.names().into_iter().chain([PROVENANCE]).collect();
