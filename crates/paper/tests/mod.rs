@@ -21,7 +21,7 @@ mod type_size;
 use crate::reproduce::ReproduceProgress;
 
 /// Reports nothing.
-struct Silent;
+pub(crate) struct Silent;
 
 impl ReproduceProgress for Silent {
     fn begin(&self, _stage: &str, _steps: u64) {}

@@ -34,12 +34,10 @@ pub(super) fn effective(
     films: &Evidence,
     progress: &dyn ReproduceProgress,
 ) -> Result<Vec<EffectiveMaterial>, ReproduceError> {
-    let steel = cases.get("dry")?.chain(Some(1.0))?.0.beads[0].material;
-    let push_n = push_n()?;
     let jobs = OILS.iter().flat_map(|case| SPEEDS_M_S.map(|speed| (*case, speed)));
     let jobs: Vec<(&'static str, f64)> = jobs.collect();
     let one = |&(case, speed_m_s): &(&'static str, f64)| {
-        let wet = WetRow { case, speed_m_s, experiment: cases.get(case)?, steel, push_n };
+        let wet = WetRow::new(cases, case, speed_m_s)?;
         let film = films.curve(case).and_then(|curve| curve.at(speed_m_s));
         let target = film.map_or([f64::NAN; 2], |p| [p.tof_incident_s.ln(), p.wall_peak_n.ln()]);
         let row =
@@ -51,7 +49,7 @@ pub(super) fn effective(
 }
 
 /// A row whose wet contacts have a material that may be changed.
-struct WetRow<'a> {
+pub(super) struct WetRow<'a> {
     case: &'static str,
     speed_m_s: f64,
     experiment: &'a Experiment,
@@ -59,7 +57,16 @@ struct WetRow<'a> {
     push_n: f64,
 }
 
-impl WetRow<'_> {
+impl<'a> WetRow<'a> {
+    pub(super) fn new(
+        cases: &'a Cases,
+        case: &'static str,
+        speed_m_s: f64,
+    ) -> Result<Self, ReproduceError> {
+        let steel = cases.get("dry")?.chain(Some(1.0))?.0.beads[0].material;
+        Ok(Self { case, speed_m_s, experiment: cases.get(case)?, steel, push_n: push_n()? })
+    }
+
     /// The contact with these logarithms of K over K and of η.
     fn contact(&self, [stiffness, viscosity]: [f64; 2]) -> WetContact {
         let dry = 1.0 - self.steel.poisson_ratio.powi(2);
@@ -87,7 +94,7 @@ impl WetRow<'_> {
     }
 
     /// Logarithms of incident time and wall peak.
-    fn shot(&self, contacts: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, ReproduceError> {
+    pub(super) fn shot(&self, contacts: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, ReproduceError> {
         let plan = |logs: &[f64; 2]| {
             let experiment = self.with(&self.contact(*logs))?;
             Ok(plan(&experiment, self.speed_m_s, MODEL_ACCURACY)?.for_flights())
@@ -105,7 +112,7 @@ impl WetRow<'_> {
     }
 
     /// Newton's method in both logarithms, with differences.
-    fn matching(&self, target: [f64; 2]) -> Result<WetContact, ReproduceError> {
+    pub(super) fn matching(&self, target: [f64; 2]) -> Result<WetContact, ReproduceError> {
         const STEP: f64 = 1e-3;
         // Above dry steel, where ν has a value, and within what oils were read as.
         let inside = |[k, eta]: [f64; 2]| [k.clamp(1e-3, 1.5), eta.clamp(7.0, 15.0)];

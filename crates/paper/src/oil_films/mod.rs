@@ -76,7 +76,7 @@ impl OilFilms {
             effort: Effort::Lean(&[]),
         };
         let paper = gather(&how, None, &|| {})?;
-        let shots = FilmShots::new(accuracy, cases.oils())?;
+        let shots = FilmShots::new((accuracy, &SPEEDS_M_S), cases.oils())?;
         let variants: Vec<FilmVariant> = FilmVariant::all().collect();
         let evidence = shots.run(&variants, "films of oil", progress)?;
         let of = |wanted: &FilmVariant| {
@@ -180,3 +180,7 @@ fn ranges(corners: &[Evidence], scaled: &[Evidence], rounding: &[f64]) -> Vec<Ve
     };
     rounding.iter().enumerate().map(oil).collect()
 }
+
+#[cfg(test)]
+#[path = "../../tests/oil_films.rs"]
+mod tests;

@@ -1,6 +1,5 @@
 //! Shots of rows with films.
 
-use super::SPEEDS_M_S;
 use crate::claims::{Curve, Evidence, PrintedOil, ShotPoint};
 use crate::reproduce::{OILS, ReproduceError, ReproduceProgress, failed, plan, read_off};
 use hertzchain_experiment::{Experiment, preset};
@@ -84,10 +83,13 @@ pub(super) struct FilmShots {
 }
 
 impl FilmShots {
-    pub(super) fn new(accuracy: f64, oils: Vec<PrintedOil>) -> Result<Self, ReproduceError> {
+    pub(super) fn new(
+        (accuracy, speeds_m_s): (f64, &[f64]),
+        oils: Vec<PrintedOil>,
+    ) -> Result<Self, ReproduceError> {
         let dry = preset("dry").map_err(ReproduceError::Preset)?.with_push(push_n()?)?;
         let point = |speed: &f64| point(&dry, ("dry", *speed), accuracy, None);
-        let points = SPEEDS_M_S.par_iter().map(point).collect::<Result<_, _>>()?;
+        let points = speeds_m_s.par_iter().map(point).collect::<Result<_, _>>()?;
         Ok(Self { accuracy, dry: Curve { case: "dry".to_owned(), points }, oils })
     }
 
@@ -98,7 +100,7 @@ impl FilmShots {
         stage: &str,
         progress: &dyn ReproduceProgress,
     ) -> Result<Vec<Evidence>, ReproduceError> {
-        let (oils, speeds) = (OILS.len(), SPEEDS_M_S.len());
+        let (oils, speeds) = (OILS.len(), self.dry.points.len());
         let jobs = variants.len() * oils * speeds;
         progress.begin(stage, jobs as u64);
         let shot = |job: usize| {
