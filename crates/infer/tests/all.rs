@@ -6,6 +6,7 @@ mod choices;
 mod common;
 mod curve;
 mod data;
+mod film;
 mod free;
 mod gauge;
 mod goodness;

@@ -29,6 +29,12 @@ fn short_names_and_paths_name_the_same_numbers() {
     // The file has four materials, its dry chain one.
     assert_eq!(starts("paper", "eta"), one("eta", 3.2e4));
     assert_eq!(starts("paper", "preload"), one("preload", 0.24));
+    // A film's own, where [liquid] gives them.
+    let oil = preset("pump-film").unwrap().liquid().unwrap().dynamic_viscosity_pa_s().unwrap();
+    assert_eq!(starts("pump-film", "viscosity"), one("viscosity", oil));
+    let path = "contacts[1].laws.film_entrained.pressure_viscosity";
+    assert_eq!(starts("pump-film", path), one(path, 16e-9));
+    assert_eq!(starts("pump-film", "pressure_viscosity"), one("pressure_viscosity", 16e-9));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Films of oil as Markdown, CSV and JSON.
 
 use super::{OilFilms, OilModel, SPEEDS_M_S, WetContact, incident};
-use crate::claims::{EvaluatedClaim, claims_json, computed_text};
+use crate::claims::{claims_json, computed_text};
 use crate::reproduce::OILS;
 use crate::reproduce::tables::TableText;
 use serde_json::{Value, json};
@@ -35,7 +35,7 @@ impl OilFilms {
         }
         let _ = writeln!(
             page,
-            " the factor {:.3} on all viscosities is the least within 0.03 to 1.",
+            " the factor {:.3} on all viscosities is the least within 0.05 to 1.",
             self.factor
         );
         self.claims(&mut page);
@@ -139,11 +139,6 @@ impl OilFilms {
 
     fn range(&self, place: usize) -> [f64; 2] {
         self.ranges.iter().flatten().nth(place).copied().unwrap_or([f64::NAN; 2])
-    }
-
-    /// The claims on the film, with what its ranges allow.
-    pub fn evaluated(&self) -> &[EvaluatedClaim] {
-        &self.models[0].evaluated
     }
 }
 

@@ -16,7 +16,7 @@ const THICKENING_PER_PA: [[f64; 3]; 3] =
 const ROOMS_K: [f64; 2] = [293.15, 313.15];
 
 /// Factors on all viscosities between which ratios are interpolated.
-pub(super) const FACTORS: [f64; 4] = [0.03, 0.1, 0.3, 1.0];
+pub(super) const FACTORS: [f64; 3] = [0.05, 0.22, 1.0];
 
 /// How the oils of a row differ from the presets'.
 #[derive(Clone, Copy, Debug, PartialEq)]

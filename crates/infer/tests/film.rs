@@ -1,0 +1,63 @@
+//! The viscosity of a film of oil, from times of flight and back.
+
+use crate::common::model;
+use hertzchain_experiment::Experiment;
+use hertzchain_infer::{
+    Covariance, CurveProblem, Data, DataRow, Fitting, Freedom, Model, Problem, Speeds, fit,
+};
+use hertzchain_measure::signal::Estimate;
+
+/// A row short enough for a test: a film has the adaptive loop alone.
+const ROW: &str = "[materials.steel]\nyoung_modulus = \"213 GPa\"\npoisson_ratio = 0.3\n\
+    shear_viscosity = \"3.2e4 Pa s\"\n\
+    [liquid]\nkinematic_viscosity_40 = \"55 cSt\"\nkinematic_viscosity_100 = \"7.7 cSt\"\n\
+    density = \"870 kg/m^3\"\npressure_viscosity = \"16 1/GPa\"\n\
+    [striker]\nspeed = \"0.3 m/s\"\n\
+    [[beads]]\ncount = 6\nradius = \"6.35 mm\"\nmass = \"8.54 g\"\nmaterial = \"steel\"\n\
+    [[contacts]]\nto = 1\nlaws = [\"elastic_hertz\", \"damping_viscoelastic\"]\n\
+    [[contacts]]\nfrom = 2\nwet = true\nlaws = [\"elastic_hertz\", \"damping_viscoelastic\", \"film_entrained\"]\n\
+    [near_end]\npush = \"constant\"\nforce = \"0.24 N\"\n[far_end]\nkind = \"half-bead\"\n[sensors]\nbead = 2\n\
+    [solver]\nduration = \"0.2 ms\"\n";
+
+/// Standard error of a time of flight in s.
+const TIME_S: f64 = 0.2e-6;
+
+/// Incident times of a model at a point, off by these numbers of standard errors.
+fn measured(model: &Model, point: &[f64], off: &[(f64, f64)]) -> Data {
+    let speeds: Vec<f64> = off.iter().map(|(speed, _)| *speed).collect();
+    let curve = model.curves(&[point.to_vec()], &Speeds::of_rows(&speeds)).remove(0).unwrap();
+    let row = |(at, (speed, off)): (usize, &(f64, f64))| DataRow {
+        line: at as u64 + 2,
+        speed_m_s: Estimate { value: *speed, sigma: 0.0 },
+        values: [
+            Some(Estimate { value: curve[at][0].unwrap() + off * TIME_S, sigma: TIME_S }),
+            None,
+            None,
+            None,
+        ],
+        correlation: None,
+        freedom: Freedom::KNOWN,
+    };
+    let rows = off.iter().enumerate().map(row).collect();
+    Data { file: "simulated".to_owned(), case: String::new(), rows }
+}
+
+#[test]
+fn a_film_gives_its_viscosity_back_within_its_error() {
+    let experiment = Experiment::from_text("film.toml", ROW).unwrap();
+    let model = model(&experiment, &["viscosity"]).with_accuracy(1e-4);
+    let exact = 0.08;
+    let data = measured(&model, &[exact], &[(0.8, 0.7)]);
+    let mut parameters = model.numbers.parameters(&data.speeds_m_s());
+    // Where it starts is the oil's at 25 °C.
+    assert!((parameters[0].start / 0.1065 - 1.0).abs() < 1e-3, "{}", parameters[0].start);
+    // Thinner oils cost more steps, and the law does not hold for them.
+    (parameters[0].lower, parameters[0].upper) = (0.03, 0.3);
+    let problem = CurveProblem::new(model, data, parameters).unwrap();
+    let best =
+        fit(&problem, &Fitting { iterations: 4, tolerance: 1e-3, ..Fitting::default() }).unwrap();
+    let sd = Covariance::new(problem.parameters(), &best).sd[0];
+    // The one time is off by 0.7 of its error.
+    assert!((best.point[0] - exact).abs() < 2.0 * sd, "{:?} ± {sd}", best.point);
+    assert!(sd < 0.3 * exact, "{sd}");
+}
