@@ -14,6 +14,8 @@ pub(super) fn run(into: &mut Folder, counter: &Counter) -> Result<String, Failur
     into.write("oil-films.md", page.as_bytes())?;
     into.write("oil-films.csv", films.csv().as_bytes())?;
     into.write("oil-films.json", format!("{:#}\n", films.json()).as_bytes())?;
-    into.figure("oil_films", &oil_film_figure(&films))?;
+    let figure = oil_film_figure(&films);
+    into.figure("oil_films", &figure)?;
+    into.write("oil_films.pdf", &figure.pdf())?;
     Ok(format!("\n{page}"))
 }
