@@ -7,7 +7,7 @@
 //!
 //! Speeds of a row are from a third to three times its own, of a preset from 0.075 to 1.23 m/s, evenly spread in
 //! their logarithm. A batch of them, as `sweep` makes it, is compared with shots by the adaptive loop at a hundredth
-//! of the accuracy asked, and where these contradict it with others at 1e-10. Accuracies are 1e-3 to 1e-6, by turns.
+//! of the accuracy asked, and where these contradict it with others at 1e-9. Accuracies are 1e-3 to 1e-6, by turns.
 #![allow(
     clippy::print_stdout,
     dead_code,
@@ -33,7 +33,7 @@ type Failure = Box<dyn Error + Send + Sync>;
 
 const ACCURACIES: [f64; 4] = [1e-3, 1e-4, 1e-5, 1e-6];
 /// Accuracy of shots that decide where two runs contradict.
-const EXACT: f64 = 1e-10;
+const EXACT: f64 = 1e-9;
 /// A row is left out whose first shots take longer than this in s.
 const PATIENCE_S: f64 = 0.2;
 
