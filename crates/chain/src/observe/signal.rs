@@ -311,7 +311,7 @@ impl Signal {
         for from in sharp_rises.into_iter().flatten().filter(|_| end_slope <= 0.0) {
             let start_s = piece.time_s(from);
             if inside.iter().all(|maximum| maximum.time_s <= start_s)
-                && let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, from, floor)
+                && let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, (from, 1.0), floor)
             {
                 self.lowest = self.lowest.min(dip);
                 inside.push(maximum);
@@ -319,7 +319,7 @@ impl Signal {
         }
         let on_a_rise = start_slope > 0.0 && end_slope > 0.0 && inside.is_empty();
         for at in piece.sharp_falls(self.sensor).into_iter().flatten().filter(|_| on_a_rise) {
-            if let Some((maximum, dip)) = sharp_maximum_before(piece, self.sensor, at, floor) {
+            if let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, (at, 0.0), floor) {
                 self.keep(maximum);
                 self.lowest = self.lowest.min(dip);
             }
@@ -410,36 +410,22 @@ fn first_change(piece: &Piece<'_>, sensor: Sensor, floor: f64) -> Option<f64> {
 /// Halvings of a step in which a maximum behind an infinite slope is looked for.
 const SHARPEST: i32 = 40;
 
-/// The value from which a signal rises with infinite slope, and the maximum that it comes to
-/// within the step, if that is higher by a floor: it may be narrower than any difference quotient.
+/// The value at which a signal begins to rise, or falls until, with infinite slope, and the maximum
+/// between there and an end of the step, if that is higher by a floor: it may be narrower than any
+/// difference quotient.
 fn sharp_maximum(
     piece: &Piece<'_>,
     sensor: Sensor,
-    from: f64,
+    (from, end): (f64, f64),
     floor: f64,
 ) -> Option<(f64, Maximum)> {
-    let value = |theta: f64| piece.signal(sensor, theta);
-    let at = |halvings: i32| from + (1.0 - from) * 0.5_f64.powi(halvings);
-    let values = (0..SHARPEST).map(|halvings| (value(at(halvings)), halvings));
-    let (most, highest) = values.max_by(|one, two| one.0.total_cmp(&two.0))?;
-    let dip = value(from);
-    let is_one = highest > 0 && most > dip + floor;
-    is_one.then(|| (dip, highest_between(piece, sensor, at(highest + 1), at(highest - 1))))
-}
-
-/// The maximum of a step before a signal falls with infinite slope, and the value to which it falls.
-fn sharp_maximum_before(
-    piece: &Piece<'_>,
-    sensor: Sensor,
-    fall: f64,
-    floor: f64,
-) -> Option<(Maximum, f64)> {
-    let at = |halvings: i32| fall * (1.0 - 0.5_f64.powi(halvings));
+    let at = |halvings: i32| from + (end - from) * 0.5_f64.powi(halvings);
     let values = (0..SHARPEST).map(|halvings| (piece.signal(sensor, at(halvings)), halvings));
     let (most, highest) = values.max_by(|one, two| one.0.total_cmp(&two.0))?;
-    let dip = piece.signal(sensor, fall);
+    let dip = piece.signal(sensor, from);
+    let (near, far) = (at(highest + 1), at(highest - 1));
     let is_one = highest > 0 && most > dip + floor;
-    is_one.then(|| (highest_between(piece, sensor, at(highest - 1), at(highest + 1)), dip))
+    is_one.then(|| (dip, highest_between(piece, sensor, near.min(far), near.max(far))))
 }
 
 /// A maximum by golden section: the rate of a narrow one is not known.
