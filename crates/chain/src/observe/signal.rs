@@ -318,7 +318,8 @@ impl Signal {
             }
         }
         let on_a_rise = start_slope > 0.0 && end_slope > 0.0 && inside.is_empty();
-        for at in piece.sharp_falls(self.sensor).into_iter().flatten().filter(|_| on_a_rise) {
+        let sharp_falls = if on_a_rise { piece.sharp_falls(self.sensor) } else { [None; 3] };
+        for at in sharp_falls.into_iter().flatten() {
             if let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, (at, 0.0), floor) {
                 self.keep(maximum);
                 self.lowest = self.lowest.min(dip);
