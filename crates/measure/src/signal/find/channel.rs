@@ -25,6 +25,8 @@ const LEAST_SWING: f64 = 6.0;
 const CLEAN: f64 = 0.005;
 /// Longest average, as a share of the first pulse's width.
 const LONGEST: f64 = 0.25;
+/// Share of a maximum's height by which the signal rises again beyond a valley that parts fragments.
+pub(super) const VALLEY: f64 = 0.2;
 
 pub(super) struct ChannelSignal<'a> {
     pub(super) samples: &'a [f64],
@@ -256,9 +258,13 @@ impl<'a> Smoothed<'a> {
         (one.min(other)..=one.max(other)).map(|at| self.height(at)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Both sides of the full width at half maximum about a maximum, corrected for the smoothing.
+    /// Both sides of the full width at half maximum about a maximum, corrected for the smoothing; a
+    /// side ends before at the valley to another fragment.
     pub(super) fn sides(&self, of: &SmoothedMaximum) -> (f64, f64) {
         let (left, right) = self.reach(of, 0.5 * of.height);
+        let left =
+            self.valley(of, (left.ceil() as usize..of.at).rev()).map_or(left, |at| at as f64);
+        let right = self.valley(of, of.at..right as usize).map_or(right, |at| at as f64);
         let seen = right - left;
         let n = self.length as f64;
         // Variances add: two averages have (n² − 1)/6; a bell's width is 2.355 deviations.
@@ -266,6 +272,21 @@ impl<'a> Smoothed<'a> {
         let share = (1.0 - added / (seen * seen)).max(0.25).sqrt();
         let top = of.at as f64;
         (share * (top - left), share * (right - top))
+    }
+
+    /// On a way away from a maximum, the least height before the signal has risen by a share of the
+    /// maximum's that no noise makes.
+    fn valley(&self, of: &SmoothedMaximum, mut way: impl Iterator<Item = usize>) -> Option<usize> {
+        let rise = (VALLEY * of.height).max(5.0 * self.noise);
+        let mut lowest = of.at;
+        let rises = way.any(|at| {
+            let height = self.height(at);
+            if height < self.height(lowest) {
+                lowest = at;
+            }
+            height > self.height(lowest) + rise
+        });
+        rises.then_some(lowest)
     }
 
     /// Where the signal last falls to `height` on either side of a maximum, between samples.

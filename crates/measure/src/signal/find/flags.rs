@@ -1,6 +1,6 @@
 //! Clipped tops, digitiser steps, and competing maxima of the pulses found.
 
-use super::channel::{Smoothed, SmoothedMaximum, extremes};
+use super::channel::{Smoothed, SmoothedMaximum, VALLEY, extremes};
 use super::{
     Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Pulse, PulseKind, QualityFlag,
 };
@@ -108,7 +108,6 @@ const MOST: usize = 2;
 /// Share of the width within which two maxima are noise, or digitiser steps, on one top, unless the
 /// signal falls by a share of the lower one between them.
 const APART: f64 = 0.5;
-const VALLEY: f64 = 0.2;
 /// Half widths of the rise before a maximum where its pulse has hardly begun.
 const BEGUN: f64 = 2.6;
 /// Standard errors of a difference in height beyond which it is no chance: 0.13 %.
