@@ -88,6 +88,23 @@ fn fragments_apart_are_no_rivals() {
     }
 }
 
+/// Two fragments alike but for a tenth, with a valley of 0.7 of their height, on a plateau behind them:
+/// the half height lies beyond both, 70 samples before the maximum and more behind.
+#[test]
+fn a_fragment_ends_at_the_valley_to_the_next() {
+    let fragment = |t: f64, at_s: f64| ((t - LATER_S - at_s) / 31e-6).cosh().powi(-4);
+    let plateau = |t: f64| 0.6 / (1.0 + (-(t - LATER_S - 60e-6) / 12e-6).exp());
+    let pulses = [(0.8e-3, 1.0, 60e-6), (WALL_S, 1.6, 52e-6), (LATER_S, 0.0, 40e-6)];
+    let mut samples = Scene { pulses, noise: 0.002, ..Scene::default() }.summed();
+    for (i, volt) in samples.iter_mut().enumerate() {
+        let t = i as f64 * 1e-6;
+        *volt += 0.2 * (0.9 * fragment(t, -47e-6) + fragment(t, 0.0) + plateau(t));
+    }
+    let measured = measure(Channels::Summed(&samples), 1e-6, &SignalOptions::default()).unwrap();
+    let (rise, _) = measured.found.reflected.unwrap().sides_samples;
+    assert!((18.0..28.0).contains(&rise), "{rise}");
+}
+
 /// What all shots of a speed determine changes the return and nothing else.
 #[test]
 fn a_rival_told_to_be_the_higher_is_the_return() {

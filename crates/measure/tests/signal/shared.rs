@@ -73,6 +73,13 @@ fn a_fragment_before_a_return_is_not_taken_for_what_lies_under_it() {
 }
 
 #[test]
+fn a_force_of_the_wall_that_comes_back_before_a_return_is_in_its_error() {
+    let hump = |t: f64| 0.02 * (-((t - BACK_S + 70e-6) / 60e-6).powi(2)).exp();
+    let (by, may) = moved(&with(hump));
+    assert!(may.abs() > 1e-7 && by.abs() < 6.0 * may.abs(), "{by:e} {may:e}");
+}
+
+#[test]
 fn a_wall_that_has_let_go_moves_nothing_and_nothing_is_stated() {
     // From its pulse's end on the wall's force is less by the push, and no more changes.
     let let_go = |t: f64| -0.02 * (1.0 + ((t - WALL_S - 250e-6) / 40e-6).tanh());

@@ -15,6 +15,8 @@ const LIKELY: f64 = 0.14;
 const DEVIATION: f64 = 0.2;
 /// Standard deviation of the fall under other pulses over the largest possible one.
 const BEFORE: f64 = 0.3;
+/// Largest force of the wall, over a reflected pulse, that comes back before it.
+const RISEN: f64 = 0.015;
 
 impl ChannelView<'_> {
     /// Fall, a sample, that is likely under a reflected pulse at its maximum; 0 under others.
@@ -30,7 +32,35 @@ impl ChannelView<'_> {
     pub(super) fn fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
         let least = if self.wall.is_some() { DEVIATION } else { BEFORE };
         let share = least + (1.0 - least) * pulse.asymmetry();
-        share * self.largest_fall_under(pulse, time)
+        (share * self.largest_fall_under(pulse, time)).hypot(self.risen_under(pulse, time))
+    }
+
+    /// Standard deviation of the fall, a sample, of what rose before a reflected pulse: a force of
+    /// the wall's that came back, unless it is the sensor bead's.
+    fn risen_under(&self, pulse: &Pulse, time: f64) -> f64 {
+        let Some((wall, (foot, length))) = self.wall.zip(self.foot(pulse, time)) else {
+            return 0.0;
+        };
+        let means = self.means_before(foot, length);
+        let least = self.least_mean(wall as f64, foot, pulse.steep_width_samples());
+        let risen = (means[2] - least.max(0.0)).clamp(0.0, RISEN * pulse.height.abs());
+        BEFORE * left_of(means, (time - foot) / length) * risen / (time - foot)
+    }
+
+    /// Where a pulse has not begun in a channel that sums both sensors, and the length of stretches
+    /// before it.
+    fn foot(&self, pulse: &Pulse, time: f64) -> Option<(f64, f64)> {
+        let foot = time - 2.0 * FOOT * pulse.sides_samples.0;
+        let length = STRETCH * pulse.width_samples;
+        (self.summed && foot > length).then_some((foot, length))
+    }
+
+    /// Means of the last three stretches before a pulse, the earliest first.
+    fn means_before(&self, foot: f64, length: f64) -> [f64; 3] {
+        [2.0, 1.0, 0.0].map(|lengths| {
+            let end = foot - lengths * length;
+            self.beyond_noise(end - length, end)
+        })
     }
 
     /// Standard deviation of the difference between what may lie under two maxima of a pulse.
@@ -45,22 +75,16 @@ impl ChannelView<'_> {
     /// begins to nothing at its maximum; under an asymmetric one, whose flat top little can shift
     /// far, within its rise. Under the reflected pulse it is the wall's, see [`Self::wall_fall`].
     fn largest_fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
-        let rise = pulse.sides_samples.0;
-        let foot = time - 2.0 * FOOT * rise;
-        let length = STRETCH * pulse.width_samples;
-        if !self.summed || foot <= length {
+        let Some((foot, length)) = self.foot(pulse, time) else {
             return 0.0;
-        }
-        let [there, before, earlier] = [0.0, 1.0, 2.0].map(|lengths| {
-            let end = foot - lengths * length;
-            self.beyond_noise(end - length, end)
-        });
+        };
+        let means = self.means_before(foot, length);
         if let Some(wall) = self.wall {
-            return self.wall_fall(pulse, wall as f64, foot, there) / (time - foot);
+            return self.wall_fall(pulse, wall as f64, foot, means[2]) / (time - foot);
         }
-        let left = left_of([earlier, before, there], (time - foot) / length);
-        let (there, asymmetry) = (left * there, pulse.asymmetry());
-        there * (asymmetry / rise + (1.0 - asymmetry) / (time - foot))
+        let left = left_of(means, (time - foot) / length);
+        let (there, asymmetry) = (left * means[2], pulse.asymmetry());
+        there * (asymmetry / pulse.sides_samples.0 + (1.0 - asymmetry) / (time - foot))
     }
 
     /// How far the wall's signal may fall under a reflected pulse. What is there before its foot may
