@@ -74,9 +74,10 @@ fn a_fragment_before_a_return_is_not_taken_for_what_lies_under_it() {
 
 #[test]
 fn a_force_of_the_wall_that_comes_back_before_a_return_is_in_its_error() {
-    let hump = |t: f64| 0.02 * (-((t - BACK_S + 70e-6) / 60e-6).powi(2)).exp();
+    let hump = |t: f64| 0.015 * (-((t - BACK_S + 50e-6) / 120e-6).powi(2)).exp();
     let (by, may) = moved(&with(hump));
-    assert!(may.abs() > 1e-7 && by.abs() < 6.0 * may.abs(), "{by:e} {may:e}");
+    // How it goes on beneath the return is not known: a share of it, by its last means.
+    assert!(may.abs() > 2e-8 && by.abs() < 6.0 * may.abs(), "{by:e} {may:e}");
 }
 
 #[test]
