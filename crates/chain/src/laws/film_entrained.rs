@@ -93,14 +93,19 @@ impl Term<4> for FilmEntrained {
         let &[modulus, radius, viscosity, alpha] = k;
         // Without oil, or without elasticity, nothing is entrained.
         (viscosity > 0.0 && modulus > 0.0).then(|| -> Box<dyn ContactState> {
-            let relaxing = |c: f64| {
-                2.0 * modulus / viscosity * (STIFF / (c * radius.powf(1.4))).powf(5.0 / 3.0)
-            };
+            let (speed, reach) = (viscosity / (2.0 * modulus), radius.powf(1.4));
             let inlet = alpha * PRESSURE[0] * modulus * (LEFT / (radius * radius)).cbrt();
-            let relaxing = RIM.map(relaxing);
-            let rings = vec![Ring::default()];
-            let (advances, rate) = (true, 0.0);
-            Box::new(EntrainedFilm { radius, modulus, relaxing, inlet, rings, advances, rate })
+            Box::new(EntrainedFilm {
+                radius,
+                modulus,
+                relaxing: (STIFF / (RIM[0] * reach)).powf(5.0 / 3.0) / speed,
+                drawing: RIM[1] * reach * speed.powf(0.6),
+                inlet,
+                rings: vec![Ring::default()],
+                advances: true,
+                drawn: false,
+                rate: 0.0,
+            })
         })
     }
 }
@@ -161,14 +166,18 @@ struct Reach {
 struct EntrainedFilm {
     radius: f64,
     modulus: f64,
-    /// (2E*/η) (κ/(c R*^{1.4}))^{5/3} for c₊ and c₋.
-    relaxing: [f64; 2],
+    /// (2E*/η) (κ/(c₊ R*^{1.4}))^{5/3}.
+    relaxing: f64,
+    /// c₋ R*^{1.4} (η/2E*)^{3/5}.
+    drawing: f64,
     /// x over (a y)^{1/3}.
     inlet: f64,
     /// What the edge left, inner rings first; δ_e rises outward.
     rings: Vec<Ring>,
     /// Whether the edge advances at the start of the step; else it is held by what it left.
     advances: bool,
+    /// Whether the rim is drawn there; else u is above 0 or about to be.
+    drawn: bool,
     /// Overlap rate there.
     rate: f64,
 }
@@ -178,6 +187,9 @@ const SPAN: f64 = 0.02;
 
 /// Growth below which an edge turns: a step that ends there ends a little before or after.
 const TURNS: f64 = 1e-6;
+
+/// Rim over R* that counts as relaxed, over `TURNS`.
+const SLIGHT: f64 = 1e-6;
 
 impl EntrainedFilm {
     /// G and x G′/G for a rim of area a y.
@@ -195,7 +207,7 @@ impl EntrainedFilm {
     fn reach(&self, unknown: f64, root: f64) -> Reach {
         let root_radius = self.radius.sqrt();
         let dry = root_radius * root;
-        if unknown < 0.0 {
+        if unknown <= 0.0 {
             return Reach { radius: dry, film: 0.0, slope: 0.0 };
         }
         let (level, thin) = (dry * dry, LEFT * self.radius * root_radius);
@@ -239,21 +251,22 @@ impl EntrainedFilm {
 
     /// Force in N at a radius and ∫ a dδ, and the rate of u in m/s.
     fn pushed(&self, unknown: f64, contact: Closed, (a, push): (f64, f64)) -> (f64, f64) {
-        // a y, with its sign.
-        let rim = unknown * (a * self.radius).sqrt();
         let hertz = 2.0 / 3.0 * self.radius.sqrt() * contact.overlap * contact.root;
-        let force = 2.0 * self.modulus * (push + STIFF * rim - hertz);
+        let force = |rim: f64| 2.0 * self.modulus * (push + rim - hertz);
+        if self.drawn {
+            let rim = self.drawing * contact.rate.abs().powf(0.6);
+            return (force(rim.copysign(contact.rate)), 0.0);
+        }
+        // a y, below 0 only within a step that ends where it reaches 0.
+        let rim = unknown * (a * self.radius).sqrt();
         let size = rim.abs();
-        let relaxing = match rim > 0.0 {
-            true if self.inlet > 0.0 => {
-                self.relaxing[0] / self.thickening(size).0.powf(PRESSURE[1])
-            }
-            true => self.relaxing[0],
-            false => self.relaxing[1],
+        let relaxing = match self.inlet > 0.0 {
+            true => self.relaxing / self.thickening(size).0.powf(PRESSURE[1]),
+            false => self.relaxing,
         };
         let root_of_size = size.cbrt();
         let given_way = relaxing * size * root_of_size * root_of_size;
-        (force, (a / self.radius).sqrt() * (contact.rate - given_way.copysign(rim)))
+        (force(STIFF * rim), (a / self.radius).sqrt() * (contact.rate - given_way.copysign(rim)))
     }
 
     /// Rate of a² = R* (δ + fresh film) over the sizes of its parts, −1 to 1.
@@ -261,6 +274,32 @@ impl EntrainedFilm {
         let (_, rate) = self.pushed(unknown, contact, (reach.radius, 0.0));
         let fresh = reach.film * (1.0 + reach.slope / 3.0) * rate;
         (contact.rate + fresh) / (contact.rate.abs() + fresh.abs()).max(f64::MIN_POSITIVE)
+    }
+
+    /// Leaves a ring where the edge has advanced or drawn back; returns the numbers since then.
+    fn accept_edge(&mut self, [unknown, moved, worked]: [f64; 3], contact: Closed) -> [f64; 3] {
+        let (overlap, reach) = (contact.overlap, self.reach(unknown, contact.root));
+        let (outer, span) = (self.outer(), SPAN * self.radius);
+        let grows = self.growth(unknown, contact, &reach) > TURNS;
+        let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0]);
+        if was && reach.radius > outer.radius && overlap > outer.overlap {
+            let (push, work) = (outer.push + moved * span, outer.work + worked * span * span);
+            self.rings.push(Ring { radius: reach.radius, overlap, push, work });
+            self.advances = grows;
+        } else if was {
+            // Rounding of a contact at rest.
+            self.advances = grows;
+            numbers = [unknown, moved, worked];
+        } else {
+            let held = self.held(overlap);
+            self.advances = grows && reach.radius > held.radius;
+            if self.advances || overlap < outer.overlap {
+                let inside = |ring: &Ring| ring.overlap <= overlap;
+                self.rings.truncate(self.rings.partition_point(inside).max(1));
+                self.rings.push(held);
+            }
+        }
+        numbers
     }
 }
 
@@ -270,7 +309,7 @@ impl ContactState for EntrainedFilm {
         let push = 2.0 / 3.0 * radius * overlap_m;
         self.rings.truncate(1);
         self.rings.push(Ring { radius, overlap: overlap_m, push, work: 0.4 * push * overlap_m });
-        (self.advances, self.rate) = (true, 0.0);
+        (self.advances, self.drawn, self.rate) = (true, false, 0.0);
     }
 
     fn force_and_rates(&self, numbers_m: [f64; 3], contact: Closed) -> (f64, [f64; 3]) {
@@ -297,39 +336,29 @@ impl ContactState for EntrainedFilm {
     }
 
     fn until_change(&self, unknown_m: f64, contact: Closed) -> f64 {
+        if self.drawn {
+            return contact.rate / self.rate;
+        }
+        let relaxed = unknown_m / (SLIGHT * self.radius);
         let reach = self.reach(unknown_m, contact.root);
         if self.advances {
-            return self.growth(unknown_m, contact, &reach);
+            return relaxed.min(self.growth(unknown_m, contact, &reach));
         }
         let overtaken = 1.0 - (reach.radius / self.held(contact.overlap).radius).powi(2);
-        let drawn = self.rate < 0.0 && contact.overlap < self.outer().overlap;
-        if drawn { overtaken.min(contact.rate / self.rate) } else { overtaken }
+        let back = self.rate < 0.0 && contact.overlap < self.outer().overlap;
+        let pressed = if back { contact.rate / self.rate } else { 1.0 };
+        relaxed.min(overtaken).min(pressed)
     }
 
-    fn accept(&mut self, [unknown, moved, worked]: [f64; 3], contact: Closed) -> [f64; 3] {
-        let (overlap, reach) = (contact.overlap, self.reach(unknown, contact.root));
-        let (outer, span) = (self.outer(), SPAN * self.radius);
-        let grows = self.growth(unknown, contact, &reach) > TURNS;
-        let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0]);
+    fn accept(&mut self, numbers_m: [f64; 3], contact: Closed) -> ([f64; 3], bool) {
+        let [unknown, moved, worked] = numbers_m;
+        let was = (self.advances, self.drawn);
+        let mut numbers = self.accept_edge([unknown.max(0.0), moved, worked], contact);
+        let relaxed = unknown <= TURNS * SLIGHT * self.radius;
+        self.drawn = relaxed && contact.rate < -TURNS * self.rate.abs();
         self.rate = contact.rate;
-        if was && reach.radius > outer.radius && overlap > outer.overlap {
-            let (push, work) = (outer.push + moved * span, outer.work + worked * span * span);
-            self.rings.push(Ring { radius: reach.radius, overlap, push, work });
-            self.advances = grows;
-        } else if was {
-            // Rounding of a contact at rest.
-            self.advances = grows;
-            numbers = [unknown, moved, worked];
-        } else {
-            let held = self.held(overlap);
-            self.advances = grows && reach.radius > held.radius;
-            if self.advances || overlap < outer.overlap {
-                let inside = |ring: &Ring| ring.overlap <= overlap;
-                self.rings.truncate(self.rings.partition_point(inside).max(1));
-                self.rings.push(held);
-            }
-        }
-        numbers
+        if self.drawn { numbers[0] = 0.0 };
+        (numbers, was != (self.advances, self.drawn))
     }
 
     fn boxed(&self) -> Box<dyn ContactState> {

@@ -154,8 +154,9 @@ pub trait ContactState: Debug + Send + Sync {
     /// the step, which must end there; dimensionless, of the order of 1.
     fn until_change(&self, number_m: f64, contact: Closed) -> f64;
 
-    /// Makes the end of a step the start of the next; returns the numbers there.
-    fn accept(&mut self, numbers_m: [f64; 3], contact: Closed) -> [f64; 3];
+    /// Makes the end of a step the start of the next; returns the numbers there, and whether
+    /// force or rates are others there than at the end of the step.
+    fn accept(&mut self, numbers_m: [f64; 3], contact: Closed) -> ([f64; 3], bool);
 
     /// A copy.
     fn boxed(&self) -> Box<dyn ContactState>;

@@ -90,14 +90,22 @@ impl ContactStates {
         worst
     }
 
-    /// Makes the end of a step its start, at the overlaps in m and rates in m/s there.
-    pub(super) fn accept(&mut self, moving: &Range<usize>, at: impl Fn(usize) -> (f64, f64)) {
+    /// Makes the end of a step its start, at the overlaps in m and rates in m/s there; returns
+    /// whether the first stage must be computed anew.
+    pub(super) fn accept(
+        &mut self,
+        moving: &Range<usize>,
+        at: impl Fn(usize) -> (f64, f64),
+    ) -> bool {
+        let mut any = false;
         for own in self.contacts.iter_mut().filter(|own| moving.contains(&own.contact)) {
-            own.start_m = own.state.accept(own.stage_m, closed(at(own.contact)));
-            own.stage_m = own.start_m;
+            let (numbers, changed) = own.state.accept(own.stage_m, closed(at(own.contact)));
+            (own.start_m, own.stage_m) = (numbers, numbers);
+            any |= changed;
         }
         let last = self.rates_m_s.len() - 1;
         self.rates_m_s.swap(0, last);
+        any
     }
 
     /// A contact has opened: what comes next begins anew.

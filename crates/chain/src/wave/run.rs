@@ -309,7 +309,7 @@ impl<'a> Wave<'a> {
         let last = self.table.stages() - 1;
         self.a.swap(0, last);
         self.remember_largest();
-        self.accept_states();
+        let behaves = self.accept_states();
         let changed = match self.control {
             Control::Adaptive { .. } => self.settle_gates(),
             Control::Fixed { .. } => self.follow_gates(),
@@ -326,7 +326,7 @@ impl<'a> Wave<'a> {
         self.wake(awake);
         let begun =
             !self.slow.active && self.slow.is_due(self.window.bodies.len()) && self.begin_slow();
-        if changed || finished || begun {
+        if changed || behaves || finished || begun {
             self.first_accelerations();
         }
     }
@@ -362,13 +362,17 @@ impl<'a> Wave<'a> {
         }
     }
 
-    fn accept_states(&mut self) {
+    /// Whether any contact's state behaves otherwise from here.
+    fn accept_states(&mut self) -> bool {
+        let mut changed = false;
         if self.system.has_states {
             let (contacts, mut states) = (self.contacts(), std::mem::take(&mut self.state.states));
             let v = &self.state.v;
-            states.accept(&contacts, |c| (self.state.overlap(self.system, c), v[c] - v[c + 1]));
+            let at = |c| (self.state.overlap(self.system, c), v[c] - v[c + 1]);
+            changed = states.accept(&contacts, at);
             self.state.states = states;
         }
+        changed
     }
 
     fn outcome(mut self, finished: bool) -> Outcome {
