@@ -71,13 +71,43 @@ fn forces_and_loss_of_one_contact_match_another_program() {
         let (trace, outcome) = trace(&chain, 1e-9, number(&case, "duration_s"), expected.len());
         assert_eq!(trace.columns[0].len(), expected.len() + 1);
         let peak = expected.iter().copied().fold(0.0, f64::max);
-        for (force, expected) in trace.columns[0][1..].iter().zip(&expected) {
-            // Most, 1e-5, where a contact is pressed again: radii of the other program's film are
-            // multiples of a width.
-            assert!((force + static_n - expected).abs() < 3e-5 * peak, "{force} {expected} {case}");
-        }
+        let differences = trace.columns[0][1..].iter().zip(&expected);
+        let mut apart: Vec<f64> = differences
+            .map(|(force, expected)| (force + static_n - expected).abs() / peak)
+            .collect();
+        apart.sort_by(f64::total_cmp);
+        let last = apart.len() - 1;
+        // Most, 1e-5, where a contact is pressed again: radii of the other program's film are
+        // multiples of a width.
+        assert!(apart[last - 1] < 3e-5, "{apart:?} {case}");
+        // One sample is where a drawn contact comes to rest: the other program's rim is not a
+        // dashpot and still relaxes.
+        assert!(apart[last] < 3e-4, "{apart:?} {case}");
         // Where the edge is drawn back, the other program keeps the rim's overlap, not its energy.
         close(loss_j(&outcome.budget.unwrap()), number(&case, "loss_j"), 1e-4);
+    }
+}
+
+#[test]
+fn a_drawn_contact_resists_by_the_power_three_fifths_of_its_speed() {
+    let (static_n, amplitude_m, frequency_hz, viscosity_pa_s) = (20.0, -1e-6, 1e4, 0.1);
+    let motion = Motion::Sine { amplitude_m, frequency_hz };
+    let chain = pressed(static_n, film(viscosity_pa_s, 15e-9), motion);
+    let (samples, quarter_s) = (20, 0.25 / frequency_hz);
+    let (trace, _) = trace(&chain, 1e-10, quarter_s, samples);
+    // Two equal balls of steel.
+    let (radius_m, modulus_pa) = (0.5 * 6.35e-3_f64, 0.5 * 213e9 / (1.0 - 0.09));
+    let stiffness = 4.0 / 3.0 * modulus_pa * radius_m.sqrt();
+    for (i, force) in trace.columns[0].iter().enumerate().take(samples).skip(1) {
+        let phase = 0.5 * std::f64::consts::PI * i as f64 / samples as f64;
+        let overlap_m = (static_n / stiffness).powf(2.0 / 3.0) + amplitude_m * phase.sin();
+        let speed_m_s = -amplitude_m * std::f64::consts::TAU * frequency_hz * phase.cos();
+        // Nothing was squeezed before: the edge is Hertz's.
+        let drawn =
+            0.185 * radius_m.powf(1.4) * (0.5 * viscosity_pa_s * speed_m_s / modulus_pa).powf(0.6);
+        let expected = stiffness * overlap_m.powf(1.5) - 2.0 * modulus_pa * drawn - static_n;
+        // Dense output of the overlap.
+        assert!((force - expected).abs() < 1e-7 * static_n, "{force} {expected} at {i}");
     }
 }
 
@@ -101,8 +131,9 @@ fn rows_with_oil_match_another_program() {
         let chain = oily_row(number(&case, "speed_m_s"), Some(film_of(&case)));
         let (passage, outcome) = shoot(&chain, 1e-8);
         // The other program's times are extrapolated from Verlet steps of first order and joined
-        // by parabolas; its film is on nodes: 1.5e-6. Its steps of 50 ns are off by up to 5e-4.
-        close(passage.tof_incident_s(), number(&case, "tof_s"), 3e-6);
+        // by parabolas; its film is on nodes: 1.5e-6. Its drawn rim relaxes as the squeezed one
+        // does: some 10 ns, 3e-6 of a time at 0.075 m/s.
+        close(passage.tof_incident_s(), number(&case, "tof_s"), 5e-6);
         close(passage.wall.value + 0.24, number(&case, "wall_n"), 1e-5);
         let budget = outcome.budget.unwrap();
         assert!(loss_j(&budget) > 0.3 * budget.start_j, "{budget:?}");

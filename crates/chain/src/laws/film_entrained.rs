@@ -9,10 +9,12 @@ use crate::material::BeadPair;
 ///
 /// F = 2E* (a δ − ∫_0^a δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y) where a grows with y > 0;
 ///
-/// the rim y relaxes: ẏ = δ̇ − (2E*/η) (κ a |y| / (c R*^{1.4}))^{5/3} sign y − y ȧ/(2a), c = c₊ for y > 0
-/// and c₋ for y < 0. Viscosity η exp(α p): with x = α k E* (β a y/R*²)^{1/3} and G = x/(1 − e^{−x}), β becomes
-/// β G^n and, for y > 0, η becomes η G^m. c₊, c₋, β, κ, k, m, n are pure numbers, fitted to a transient
-/// elastohydrodynamic contact (`bench/film`), not to measurements.
+/// the squeezed rim y relaxes: ẏ = δ̇ − (2E*/η) (κ a y / (c₊ R*^{1.4}))^{5/3} − y ȧ/(2a), to y = 0 at least.
+/// Drawn, δ̇ < 0 at y = 0, it would relax so within some 10 ns with a smaller c₋: it is a dashpot, with
+/// κ a y = −c₋ R*^{1.4} (η |δ̇|/(2E*))^{3/5} in F and y = 0 elsewhere. Viscosity η exp(α p): with
+/// x = α k E* (β a y/R*²)^{1/3} and G = x/(1 − e^{−x}), β becomes β G^n and, for y > 0, η becomes η G^m.
+/// c₊, c₋, β, κ, k, m, n are pure numbers, fitted to a transient elastohydrodynamic contact
+/// (`bench/film`), not to measurements.
 ///
 /// The law never creates energy: F δ̇ is the change of E* (∫_0^a (δ − δ_e)² ds + κ a y²) − (2/5) K δ^{5/2} plus
 /// a loss in the rim that is not negative. A contact starts dry, at rest, and again after each gap.
@@ -39,7 +41,8 @@ impl Term<4> for FilmEntrained {
     const INFO: LawInfo = LawInfo {
         name: "film_entrained",
         equation: "F = 2 E* (a δ − ∫ δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y),  \
-                   ẏ = δ̇ − (2 E*/η) (κ a y/(c R*^{1.4}))^{5/3} − y ȧ/(2a),  E* = 3 K/(4 √R*)",
+                   ẏ = δ̇ − (2 E*/η) (κ a y/(c₊ R*^{1.4}))^{5/3} − y ȧ/(2a) for y > 0;  drawn: \
+                   κ a y = −c₋ R*^{1.4} (η |δ̇|/(2 E*))^{3/5};  E* = 3 K/(4 √R*)",
         parameters: &[
             Parameter {
                 name: "viscosity",
@@ -105,6 +108,7 @@ impl Term<4> for FilmEntrained {
                 advances: true,
                 drawn: false,
                 rate: 0.0,
+                film: 0.0,
             })
         })
     }
@@ -151,6 +155,7 @@ impl Ring {
 }
 
 /// The edge of a contact that grows.
+#[derive(Default)]
 struct Reach {
     /// Radius a in m.
     radius: f64,
@@ -158,6 +163,8 @@ struct Reach {
     film: f64,
     /// n x G′/G.
     slope: f64,
+    /// Cube root of a y, and G, where an oil thickens.
+    of_rim: Option<(f64, f64)>,
 }
 
 /// One contact with oil. Its numbers are u = y √(a/R*), whose rate √(a/R*) (δ̇ − loss) has neither ȧ nor
@@ -180,6 +187,8 @@ struct EntrainedFilm {
     drawn: bool,
     /// Overlap rate there.
     rate: f64,
+    /// Fresh film over u there.
+    film: f64,
 }
 
 /// Makes errors of ∫ a dδ errors of an overlap: a contact's radius over R*.
@@ -192,9 +201,9 @@ const TURNS: f64 = 1e-6;
 const SLIGHT: f64 = 1e-6;
 
 impl EntrainedFilm {
-    /// G and x G′/G for a rim of area a y.
-    fn thickening(&self, rim: f64) -> (f64, f64) {
-        let x = self.inlet * rim.cbrt();
+    /// The rim of area a y = c³ of oil that thickens: G and x G′/G there.
+    fn thickening(&self, root_of_rim: f64) -> (f64, f64) {
+        let x = self.inlet * root_of_rim;
         if x < 1e-9 {
             return (1.0, 0.0);
         }
@@ -202,55 +211,66 @@ impl EntrainedFilm {
         (x / less, 1.0 - x * (1.0 - less) / less)
     }
 
-    /// Solves a² = R* (δ + β G^n u √(R*/a)) by Newton in √a, from the side on which it converges
-    /// monotonically after one step.
+    /// Solves a² = R* (δ + β G^n u √(R*/a)) by Newton in √a, from the film of the last step.
     fn reach(&self, unknown: f64, root: f64) -> Reach {
         let root_radius = self.radius.sqrt();
         let dry = root_radius * root;
         if unknown <= 0.0 {
-            return Reach { radius: dry, film: 0.0, slope: 0.0 };
+            return Reach { radius: dry, ..Reach::default() };
         }
         let (level, thin) = (dry * dry, LEFT * self.radius * root_radius);
-        let mut q = self.outer().radius.max(dry).sqrt();
+        let mut q = (level + self.radius * self.film * unknown).sqrt().sqrt();
         if q == 0.0 {
             q = (thin * unknown).powf(0.2);
         }
         if q == 0.0 {
-            return Reach { radius: 0.0, film: 0.0, slope: 0.0 };
+            return Reach::default();
         }
         for _ in 0..30 {
-            let (film, slope) = match self.inlet > 0.0 {
-                true => {
-                    let (thick, slope) = self.thickening(unknown * q * root_radius);
-                    (thin * thick.powf(PRESSURE[2]), PRESSURE[2] * slope)
-                }
-                false => (thin, 0.0),
-            };
+            let (mut film, mut slope, mut of_rim) = (thin, 0.0, None);
+            if self.inlet > 0.0 {
+                let cube_root = (unknown * q * root_radius).cbrt();
+                let (thick, steepness) = self.thickening(cube_root);
+                film *= thick.powf(PRESSURE[2]);
+                (slope, of_rim) = (PRESSURE[2] * steepness, Some((cube_root, thick)));
+            }
             let (fourth, fresh) = (q * q * q * q, film * unknown);
             let steep = 5.0 * fourth - level - slope * fresh / (3.0 * q);
             let step = ((fourth - level) * q - fresh) / steep;
             q -= step;
-            // Convergence is quadratic: what is left is rounding.
-            if step.abs() <= 1e-9 * q {
-                return Reach { radius: q * q, film: film / (self.radius * q), slope };
+            of_rim = of_rim.map(|(cube_root, thick)| (cube_root * (1.0 - step / (3.0 * q)), thick));
+            // Convergence is quadratic: 1e-12 is left.
+            if step.abs() <= 1e-6 * q {
+                return Reach { radius: q * q, film: film / (self.radius * q), slope, of_rim };
             }
         }
-        Reach { radius: f64::NAN, film: f64::NAN, slope: 0.0 }
+        Reach { radius: f64::NAN, film: f64::NAN, ..Reach::default() }
     }
 
     fn outer(&self) -> Ring {
         self.rings.last().copied().unwrap_or_default()
     }
 
+    /// How many rings the edge passed up to an overlap: mostly all but the last few.
+    fn inside(&self, overlap: f64) -> usize {
+        self.rings.iter().rposition(|ring| ring.overlap <= overlap).map_or(0, |last| last + 1)
+    }
+
     /// Where the edge has been drawn back to, along what it left.
     fn held(&self, overlap: f64) -> Ring {
-        let next = self.rings.partition_point(|ring| ring.overlap <= overlap);
+        let next = self.inside(overlap);
         let inner = self.rings.get(next.saturating_sub(1)).copied().unwrap_or_default();
         inner.towards(self.rings.get(next), overlap)
     }
 
-    /// Force in N at a radius and ∫ a dδ, and the rate of u in m/s.
-    fn pushed(&self, unknown: f64, contact: Closed, (a, push): (f64, f64)) -> (f64, f64) {
+    /// Force in N at a radius and ∫ a dδ, and the rate of u in m/s; `of_rim` as in [`Reach`].
+    fn pushed(
+        &self,
+        unknown: f64,
+        contact: Closed,
+        (a, push): (f64, f64),
+        of_rim: Option<(f64, f64)>,
+    ) -> (f64, f64) {
         let hertz = 2.0 / 3.0 * self.radius.sqrt() * contact.overlap * contact.root;
         let force = |rim: f64| 2.0 * self.modulus * (push + rim - hertz);
         if self.drawn {
@@ -259,19 +279,21 @@ impl EntrainedFilm {
         }
         // a y, below 0 only within a step that ends where it reaches 0.
         let rim = unknown * (a * self.radius).sqrt();
-        let size = rim.abs();
+        let cube_root = of_rim.map_or_else(|| rim.abs().cbrt(), |(cube_root, _)| cube_root);
         let relaxing = match self.inlet > 0.0 {
-            true => self.relaxing / self.thickening(size).0.powf(PRESSURE[1]),
+            true => {
+                let thick = of_rim.map_or_else(|| self.thickening(cube_root).0, |(_, thick)| thick);
+                self.relaxing * thick.powf(-PRESSURE[1])
+            }
             false => self.relaxing,
         };
-        let root_of_size = size.cbrt();
-        let given_way = relaxing * size * root_of_size * root_of_size;
+        let given_way = relaxing * rim.abs() * cube_root * cube_root;
         (force(STIFF * rim), (a / self.radius).sqrt() * (contact.rate - given_way.copysign(rim)))
     }
 
     /// Rate of a² = R* (δ + fresh film) over the sizes of its parts, −1 to 1.
     fn growth(&self, unknown: f64, contact: Closed, reach: &Reach) -> f64 {
-        let (_, rate) = self.pushed(unknown, contact, (reach.radius, 0.0));
+        let (_, rate) = self.pushed(unknown, contact, (reach.radius, 0.0), reach.of_rim);
         let fresh = reach.film * (1.0 + reach.slope / 3.0) * rate;
         (contact.rate + fresh) / (contact.rate.abs() + fresh.abs()).max(f64::MIN_POSITIVE)
     }
@@ -281,6 +303,7 @@ impl EntrainedFilm {
         let (overlap, reach) = (contact.overlap, self.reach(unknown, contact.root));
         let (outer, span) = (self.outer(), SPAN * self.radius);
         let grows = self.growth(unknown, contact, &reach) > TURNS;
+        self.film = reach.film;
         let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0]);
         if was && reach.radius > outer.radius && overlap > outer.overlap {
             let (push, work) = (outer.push + moved * span, outer.work + worked * span * span);
@@ -294,8 +317,7 @@ impl EntrainedFilm {
             let held = self.held(overlap);
             self.advances = grows && reach.radius > held.radius;
             if self.advances || overlap < outer.overlap {
-                let inside = |ring: &Ring| ring.overlap <= overlap;
-                self.rings.truncate(self.rings.partition_point(inside).max(1));
+                self.rings.truncate(self.inside(overlap).max(1));
                 self.rings.push(held);
             }
         }
@@ -316,12 +338,12 @@ impl ContactState for EntrainedFilm {
         let [unknown, moved, _] = numbers_m;
         if !self.advances {
             let ring = self.held(contact.overlap);
-            let (force, rate) = self.pushed(unknown, contact, (ring.radius, ring.push));
+            let (force, rate) = self.pushed(unknown, contact, (ring.radius, ring.push), None);
             return (force, [rate, 0.0, 0.0]);
         }
-        let (a, span) = (self.reach(unknown, contact.root).radius, SPAN * self.radius);
-        let push = self.outer().push + moved * span;
-        let (force, rate) = self.pushed(unknown, contact, (a, push));
+        let (reach, span) = (self.reach(unknown, contact.root), SPAN * self.radius);
+        let (a, push) = (reach.radius, self.outer().push + moved * span);
+        let (force, rate) = self.pushed(unknown, contact, (a, push), reach.of_rim);
         (force, [rate, a / span * contact.rate, push / (span * span) * contact.rate])
     }
 
@@ -357,7 +379,9 @@ impl ContactState for EntrainedFilm {
         let relaxed = unknown <= TURNS * SLIGHT * self.radius;
         self.drawn = relaxed && contact.rate < -TURNS * self.rate.abs();
         self.rate = contact.rate;
-        if self.drawn { numbers[0] = 0.0 };
+        if self.drawn {
+            numbers[0] = 0.0
+        };
         (numbers, was != (self.advances, self.drawn))
     }
 
