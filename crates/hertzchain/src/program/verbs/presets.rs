@@ -11,7 +11,7 @@ pub(crate) fn run(arguments: &Presets) -> Result<(), Failure> {
     }
     let heads = [
         ("The paper's chains", presets()),
-        ("The same with films of its oils, some seconds a shot", film_presets()),
+        ("The same with films of its oils", film_presets()),
         ("Examples", examples()),
         ("Campaigns, for `hertzchain campaign --preset NAME`", campaigns()),
     ];
