@@ -155,6 +155,7 @@ fn counted(
     };
     let free = ["aisi316.eta".to_owned(), "dry.B".to_owned()];
     let chains = Chains {
+        film: &[],
         dry: dry_model,
         wet: &case.wet_model,
         free: &free,

@@ -1,7 +1,7 @@
 //! Optimal design: which measurements tighten which parameters.
 
 use crate::identify::{MOVED, Scaled, in_words, is_weak, sized};
-use crate::linear::{dot, svd, unit};
+use crate::linear::{dot, norm, svd, unit};
 use crate::{Fit, InferError, Parameter};
 use std::cmp::Ordering;
 
@@ -18,6 +18,22 @@ pub struct Candidate {
     pub doubts: Vec<f64>,
     /// Its cost, in any unit common to all: shots, minutes.
     pub cost: f64,
+}
+
+impl Candidate {
+    /// With derivatives by a parameter that are no larger than they may be wrong as 0: where a
+    /// maximum of a pulse becomes another's, its jump would hide what all others determine.
+    fn without_jumps(&self) -> Self {
+        let mut left = self.clone();
+        for (k, doubt) in left.doubts.iter_mut().enumerate() {
+            let column: Vec<f64> = self.rows.iter().map(|row| row[k]).collect();
+            if *doubt >= norm(&column) {
+                left.rows.iter_mut().for_each(|row| row[k] = 0.0);
+                *doubt = 0.0;
+            }
+        }
+        left
+    }
 }
 
 /// What is to be tightened.
@@ -91,6 +107,7 @@ pub fn design(
     picks: usize,
 ) -> Result<Design, InferError> {
     check(parameters.len(), candidates, targets)?;
+    let candidates: Vec<Candidate> = candidates.iter().map(Candidate::without_jumps).collect();
     if !fit.ending.converged() {
         return Err(InferError::NotConverged(format!(
             "the fit to the data so far found no minimum ({}): what would determine most is not known where \
@@ -125,7 +142,7 @@ pub fn design(
         true => known.iter().map(|d| (Aim::Combination(words(d)), (d.clone(), 1.0))).unzip(),
     };
     let now = Information::new(&fit.jacobian.columns, (&sizes, &known), &directions);
-    let (ranked, greedy) = ranked(&now, candidates, picks);
+    let (ranked, greedy) = ranked(&now, &candidates, picks);
     Ok(Design {
         aims,
         not_identifiable,

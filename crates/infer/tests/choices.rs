@@ -213,6 +213,25 @@ fn designs_rank_by_what_linear_regression_would_gain() {
 }
 
 #[test]
+fn a_candidate_whose_derivatives_jump_says_nothing_and_hides_nothing() {
+    let free = vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)];
+    let data = Curve::drawn(free, &spaced(0.0, 1.0, 5), 0.2, &[1.0, 1.0], 3, straight);
+    let found = fit_result(&data);
+    let useful = candidate("useful", 0.5, 1.0);
+    let jumping = Candidate {
+        name: "jumping".into(),
+        rows: vec![vec![1e4, 2e4]],
+        doubts: vec![2e4; 2],
+        cost: 1.0,
+    };
+    let alone = design(&data.parameters, &found, &[useful.clone()], &[0, 1], 1).unwrap();
+    let both = design(&data.parameters, &found, &[useful, jumping], &[0, 1], 1).unwrap();
+    assert_eq!((&both.ranked[0], &both.before), (&alone.ranked[0], &alone.before));
+    // By half its derivative by b it may be wrong: the other half may be right.
+    assert!(both.ranked[1].after[0] > 0.9 * both.before[0], "{both:?}");
+}
+
+#[test]
 fn designs_say_what_would_determine_the_undetermined() {
     let data = Curve::drawn(
         vec![Parameter::new("a", "", 1.0), Parameter::new("b", "", 1.0)],

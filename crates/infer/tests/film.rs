@@ -2,8 +2,10 @@
 
 use crate::common::model;
 use hertzchain_experiment::Experiment;
+use hertzchain_infer::gauge::{Chains, Gauge};
 use hertzchain_infer::{
-    Covariance, CurveProblem, Data, DataRow, Fitting, Freedom, Model, Problem, Speeds, fit,
+    Choices, Covariance, CurveProblem, Data, DataRow, ExpectedErrors, Fitting, Freedom, Goodness,
+    Model, Problem, Speeds, design, fit, ways,
 };
 use hertzchain_measure::signal::Estimate;
 
@@ -60,4 +62,66 @@ fn a_film_gives_its_viscosity_back_within_its_error() {
     // The one time is off by 0.7 of its error.
     assert!((best.point[0] - exact).abs() < 2.0 * sd, "{:?} ± {sd}", best.point);
     assert!(sd < 0.3 * exact, "{sd}");
+}
+
+/// Dry and wet incident times at three speeds, the wet ones of films of these viscosities.
+fn gauge(viscosities: [f64; 3]) -> Gauge {
+    let wet = Experiment::from_text("film.toml", ROW).unwrap();
+    let without = ROW.replace(", \"film_entrained\"", "").replace("wet = true\n", "");
+    let dry = Experiment::from_text("dry.toml", &without).unwrap();
+    let chains = Chains {
+        dry: &dry,
+        wet: &wet,
+        free: &["eta".to_owned()],
+        systematic: &[],
+        own: &[],
+        film: &["viscosity".to_owned()],
+        accuracy: 1e-5,
+    };
+    let (model, off) = (model(&wet, &["viscosity"]), [(0.3, 0.5), (0.5, -0.4), (1.0, 0.3)]);
+    let rows = viscosities.iter().zip(&off);
+    let rows = rows.map(|(viscosity, off)| measured(&model, &[*viscosity], &[*off]).rows.remove(0));
+    let data = Data { rows: rows.collect(), ..measured(&model, &[0.1], &[]) };
+    let eta = crate::common::model(&dry, &["eta"]);
+    Gauge::new(&chains, measured(&eta, &[3.2e4], &off), data).unwrap()
+}
+
+#[test]
+fn the_gauge_gives_a_films_viscosity_at_each_speed_and_over_all() {
+    let (gauge, mut errors) = (gauge([0.08; 3]), Vec::new());
+    for row in gauge.rows() {
+        let (value, sd) = row.contact.unwrap().first.estimates()[0];
+        // The time is off by half its error, the dry contacts are known by three times.
+        assert!((value - 0.08).abs() < 2.0 * sd && sd < 0.08, "{value} ± {sd}");
+        errors.push(sd);
+    }
+    let (problem, found) = gauge.film().unwrap();
+    let sd = Covariance::new(problem.parameters(), &found).sd;
+    let at = problem.parameters().iter().position(|p| p.name == "viscosity").unwrap();
+    assert!((found.point[at] - 0.08).abs() < 2.0 * sd[at], "{:?} ± {sd:?}", found.point);
+    assert!(errors.iter().all(|of_one| sd[at] < *of_one), "{sd:?} {errors:?}");
+    assert!(Goodness::new(&problem, &found).chi_square.unwrap().probability > 0.1);
+}
+
+#[test]
+fn the_gauge_rejects_one_film_where_speeds_need_different_ones() {
+    let (problem, found) = gauge([0.04, 0.08, 0.2]).film().unwrap();
+    assert!(Goodness::new(&problem, &found).chi_square.unwrap().probability < 0.01);
+}
+
+#[test]
+fn a_design_says_what_would_tighten_a_films_viscosity() {
+    let experiment = Experiment::from_text("film.toml", ROW).unwrap();
+    let model = model(&experiment, &["viscosity"]);
+    let data = measured(&model, &[0.1], &[(0.3, 0.1), (0.6, -0.1)]);
+    let parameters = model.numbers.parameters(&data.speeds_m_s());
+    let problem = CurveProblem::new(model, data, parameters).unwrap();
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    let errors = ExpectedErrors::like(problem.data());
+    let ways = ways(&experiment, &Choices::default()).unwrap();
+    let candidates = problem.candidates(&best, &ways[..1], &[0.4, 0.8], &errors).unwrap();
+    let found = design(problem.parameters(), &best, &candidates, &[0], 1).unwrap();
+    // Both data alone; a third time of the kind takes off a fifth.
+    let (before, after) = (found.before[0], found.ranked[0].after[0]);
+    assert!(before < 0.01 && after < 0.9 * before && after > 0.6 * before, "{before} {after}");
 }

@@ -119,6 +119,7 @@ fn run_gauge(text: &str, table: &str, said: &mut [Said; 2]) -> Result<(), Box<dy
         };
         for (liquid, said) in LIQUIDS.iter().zip(said) {
             let chains = Chains {
+                film: &[],
                 dry: &dry,
                 wet: &wet,
                 free: &free,

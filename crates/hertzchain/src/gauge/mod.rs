@@ -10,8 +10,8 @@ use crate::inference::{self, user, wanted};
 use crate::input::assumed_preset;
 use crate::options::GaugeOptions as Arguments;
 use hertzchain_experiment::Experiment;
-use hertzchain_infer::Data;
 use hertzchain_infer::gauge::{Chains, Gauge, Oil, Verdict, WetRow, known_oils, oils};
+use hertzchain_infer::{CurveProblem, Data, Fit};
 use hertzchain_measure::records::text;
 use std::path::Path;
 
@@ -25,6 +25,8 @@ pub struct GaugeResult {
     pub verdict: Verdict,
     /// The oils it was held against.
     pub oils: Vec<Oil>,
+    /// The film's numbers over both curves together, where they were asked for in place of oils.
+    pub film: Option<(CurveProblem, Fit)>,
 }
 
 /// Compares known oils with a row's contacts, from times of flight of the wet and of the dry row.
@@ -57,6 +59,7 @@ pub fn gauge(
         systematic: &systematic.collect::<Result<Vec<_>, _>>().map_err(user)?,
         free: &options.dry_free,
         own: &options.own,
+        film: &options.film,
         accuracy: options.accuracy.0,
     };
     let gauge = Gauge::new(&chains, dry, wet);
@@ -64,9 +67,14 @@ pub fn gauge(
     let gauge = gauge.map_err(user)?;
     let rows = gauge.rows();
     wanted()?;
-    let verdict = gauge.verdict(&oils);
+    let film = (!options.film.is_empty()).then(|| gauge.film());
+    let verdict = match &film {
+        None => gauge.verdict(&oils),
+        Some(_) => Ok(Verdict { matches: Vec::new(), failed: Vec::new() }),
+    };
     wanted()?;
-    Ok(GaugeResult { verdict: verdict.map_err(user)?, oils, rows, gauge })
+    let film = film.transpose().map_err(user)?;
+    Ok(GaugeResult { verdict: verdict.map_err(user)?, oils, rows, film, gauge })
 }
 
 /// Presets of the paper where no model is named.

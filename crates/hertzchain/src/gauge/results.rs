@@ -2,8 +2,8 @@
 
 use super::GaugeResult;
 use crate::inference::references_json;
-use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Pair, WetRow, is_determined};
+use hertzchain_infer::{Covariance, CurveProblem, Fit, Goodness, Identifiability, Problem};
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -19,7 +19,8 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
         "dry_chi_square": gauge.dry_fit.chi_square(),
         "references": references_json(&gauge.wet),
         "scanned_s": gauge.scanned_s(),
-        "contacts": run_gauge.rows.iter().map(row).collect::<Value>(),
+        "contacts": run_gauge.rows.iter().map(|of| row(of, run_gauge)).collect::<Value>(),
+        "film": run_gauge.film.as_ref().map(film),
         "to_add": gauge.to_add(),
         "oils": verdict.matches.iter().map(|found| json!({
             "name": found.oil, "distance": found.distance,
@@ -32,17 +33,62 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
             "farthest": { "what": found.largest.0, "standard_errors": found.largest.1 },
         })).collect::<Value>(),
         "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),
-        "verdict": verdict.sentence(),
+        "verdict": run_gauge.sentence(),
         "doubts": gauge.doubts(verdict),
     })
 }
 
-fn row(row: &WetRow) -> Value {
+impl GaugeResult {
+    /// The verdict on the oils, or on a film, in a sentence.
+    pub(crate) fn sentence(&self) -> String {
+        let Some((problem, fit)) = &self.film else {
+            return self.verdict.sentence();
+        };
+        match Goodness::new(problem, fit).chi_square {
+            Some(found) if found.probability < REJECTED => format!(
+                "No one film gives the times at all speeds (p = {:.1e}).",
+                found.probability
+            ),
+            Some(found) => {
+                format!("One film gives the times at all speeds (p = {:.2}).", found.probability)
+            }
+            None => "No number is left to test the film by: measure at more speeds.".to_owned(),
+        }
+    }
+}
+
+/// Below this probability a film is rejected, as an oil is.
+const REJECTED: f64 = 0.01;
+
+/// All numbers of both curves, and what they leave open.
+fn film((problem, fit): &(CurveProblem, Fit)) -> Value {
+    let sd = Covariance::new(problem.parameters(), fit).sd;
+    let label = |at: usize| problem.residual_label(at);
+    let identified = Identifiability::new(problem.parameters(), fit, label);
+    let found = Goodness::new(problem, fit).chi_square;
+    let values = problem.parameters().iter().zip(&fit.point).zip(&sd);
+    json!({
+        "parameters": values.map(|((parameter, value), sd)| json!({
+            "name": parameter.name, "unit": parameter.unit,
+            "value": value, "standard_error": finite(*sd),
+        })).collect::<Value>(),
+        "chi_square": found.map(|of| of.value), "freedom": found.map(|of| of.freedom),
+        "probability": found.map(|of| of.probability),
+        "undetermined": identified.unidentifiable.iter().map(|one| &one.words).collect::<Vec<_>>(),
+    })
+}
+
+fn row(row: &WetRow, run_gauge: &GaugeResult) -> Value {
     let mut all = json!({ "line": row.line, "speed_m_s": row.speed_m_s });
     match &row.contact {
         Err(why) => all["missing"] = json!(why),
         Ok(contact) => {
             let [(k, k_sd), (a, a_sd)] = contact.first.estimates();
+            if let Some(of) = run_gauge.gauge.film_number() {
+                all["film"] = number(k, k_sd);
+                (all["film"]["name"], all["film"]["unit"]) = (json!(of.name), json!(of.unit));
+                return all;
+            }
             all["stiffness"] = number(k, k_sd);
             match &contact.combination {
                 None => {

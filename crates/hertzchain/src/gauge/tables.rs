@@ -9,6 +9,9 @@ const CONTACTS: &str = "line,speed_m_s,stiffness (N/m^1.5)=k,stiffness_error (N/
      relaxation_time_s=a,relaxation_time_s_error=a_error,ln_covariance,combination_exponent,\
      combination_reference_s,taken,missing,branch,scan_complete";
 
+const FILM: &str = "line,speed_m_s,name=film/name,unit=film/unit,value=film/value,\
+     standard_error=film/standard_error,missing";
+
 const OILS: &str = "name,distance,chi_square,freedom,probability,possible,farthest=farthest/what,\
      farthest_standard_errors=farthest/standard_errors";
 
@@ -17,9 +20,15 @@ pub fn tables(run_gauge: &GaugeResult, found: &Value) -> Vec<Table> {
     let mut all = vec![
         ("summary.csv", summary(run_gauge, found)),
         ("dry.csv", view(list(&found["dry"]), &columns("name,unit,value,standard_error"))),
-        ("contacts.csv", view(&contacts(run_gauge), &columns(CONTACTS))),
-        ("oils.csv", oils(list(&found["oils"]))),
     ];
+    if run_gauge.film.is_some() {
+        let whole = list(&found["film"]["parameters"]);
+        all.push(("contacts.csv", view(list(&found["contacts"]), &columns(FILM))));
+        all.push(("film.csv", view(whole, &columns("name,unit,value,standard_error"))));
+        return all;
+    }
+    all.push(("contacts.csv", view(&contacts(run_gauge), &columns(CONTACTS))));
+    all.push(("oils.csv", oils(list(&found["oils"]))));
     let failed = list(&found["failed"]);
     all.extend((!failed.is_empty()).then(|| ("failed.csv", view(failed, &columns("name,why")))));
     all

@@ -394,6 +394,10 @@ pub struct GaugeOptions {
     /// friction holds in a tapped row (near_end.force); fitted anew with every oil
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub own: Vec<String>,
+    /// Numbers of a film on the wet contacts (viscosity, pressure_viscosity) that are free in place of
+    /// K and A: the first at each speed, all over both curves together; no oils are compared
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub film: Vec<String>,
     /// Systematic errors that both curves share, as nuisance parameters: delay=0.2us, reflected_delay,
     /// skew (of the wall's channel), speed_scale=1%, radius_error=1um, or any number that can be free
     #[arg(long, value_name = "NAME=SD", value_delimiter = ',')]

@@ -17,7 +17,7 @@ pub use self::{
 
 use crate::curve::{CurveProblem, Model};
 use crate::data::{Data, Observable};
-use crate::free::{FreeNumber, FreeNumbers};
+use crate::free::{Form, FreeNumber, FreeNumbers};
 use crate::{Covariance, Fit, Fitting, Goodness, InferError, Parameter, Problem, fit};
 use hertzchain_experiment::Experiment;
 
@@ -34,6 +34,9 @@ pub struct Chains<'a> {
     /// Nuisance parameters that each chain has for itself, known to both experiments by the same
     /// names: the load of a tapped row, which friction holds and no model predicts.
     pub own: &'a [String],
+    /// Numbers of a film on the wet contacts that are free in place of K and A: the first at each
+    /// speed, all of them together over both curves.
+    pub film: &'a [String],
     /// Relative accuracy of times of flight.
     pub accuracy: f64,
 }
@@ -52,8 +55,10 @@ pub struct Gauge {
     pub data: Data,
     /// Reduced radius of the wet contacts in m.
     pub radius_m: f64,
-    /// K and A of the dry contacts as the models have them.
-    dry_contact: [f64; 2],
+    /// K and A of the dry contacts, or a film's numbers, as the models have them.
+    contact: [f64; 2],
+    /// How many numbers of a film are free; 0 where K and A are.
+    film: usize,
     /// Nuisance parameters of each chain: last of the dry numbers, before K and A of the wet.
     own: usize,
 }
@@ -61,8 +66,8 @@ pub struct Gauge {
 /// The load that friction holds in a tapped row.
 const PUSH: &str = "near_end.force";
 
-/// Numbers of a wet contact, the last of the wet model's: K and A.
-const CONTACT: usize = 2;
+/// Numbers of a wet contact, the last of the wet model's, where no film's are free.
+const CONTACT: [&str; 2] = ["wet.K", "wet.A"];
 
 impl Gauge {
     /// Fits the dry curve.
@@ -88,6 +93,10 @@ impl Gauge {
                 chains.wet.name()
             ));
         };
+        let film: Vec<&str> = chains.film.iter().map(String::as_str).collect();
+        if film.len() > CONTACT.len() {
+            return InferError::input("a film has two numbers: viscosity and pressure_viscosity");
+        }
         let dry_model = model(chains.dry, &[])?;
         let parameters = dry_model.numbers.parameters(&dry.speeds_m_s());
         let dry = CurveProblem::new(dry_model, dry, parameters)?;
@@ -99,16 +108,35 @@ impl Gauge {
             let wet = |_| FreeNumber::find(chains.wet, &format!("wet.{name}"), None);
             Ok(dry.or_else(wet)?.parameters(&[]).first().map_or(f64::NAN, |p| p.start))
         };
+        let wet_model = model(chains.wet, if film.is_empty() { &CONTACT } else { &film })?;
+        let constant = |number: &FreeNumber| number.form == Form::Constant;
+        if !wet_model.numbers.iter().rev().take(film.len()).all(constant) {
+            return InferError::input("a film's numbers do not depend on speed: name them alone");
+        }
+        let start = |at: usize| {
+            let number = wet_model.numbers.iter().rev().nth(film.len().checked_sub(at + 1)?)?;
+            number.parameters(&[]).first().map(|p| p.start)
+        };
         Ok(Self {
             own: chains.own.len(),
-            dry_contact: [value("K")?, value("A")?],
+            contact: match film.is_empty() {
+                true => [value("K")?, value("A")?],
+                false => [0, 1].map(|at| start(at).unwrap_or(f64::NAN)),
+            },
+            film: film.len(),
             dry_covariance: Covariance::new(dry.parameters(), &dry_fit),
             dry_fit,
             dry,
-            wet: model(chains.wet, &["wet.K", "wet.A"])?,
+            wet: wet_model,
             data: wet,
             radius_m,
         })
+    }
+
+    /// The number of a film that each speed gives, if one is free.
+    pub fn film_number(&self) -> Option<Parameter> {
+        let at = self.wet.numbers.len() - self.film;
+        self.wet.numbers.get(at)?.parameters(&[]).first().cloned()
     }
 
     /// How well the dry curve follows its model.
@@ -119,10 +147,15 @@ impl Gauge {
     /// The wet chain's nuisance parameters over these speeds in m/s, as its model has them.
     pub fn wet_own(&self, speeds_m_s: &[f64]) -> Vec<Parameter> {
         let numbers = &self.wet.numbers;
-        let end = numbers.len() - CONTACT;
+        let end = numbers.len() - self.contact_numbers();
         let own = numbers[end - self.own..end].iter();
         let own = own.flat_map(|number| number.parameters(speeds_m_s));
         own.map(|p| Parameter { name: format!("{} (wet)", p.name), ..p }).collect()
+    }
+
+    /// How many of the wet model's numbers, its last, are of the wet contacts.
+    fn contact_numbers(&self) -> usize {
+        if self.film > 0 { self.film } else { CONTACT.len() }
     }
 
     /// How many of the dry fit's parameters hold for both chains: the first.
@@ -136,7 +169,7 @@ impl Gauge {
     /// What to add to data that do not separate K from A.
     pub fn to_add(&self) -> Option<&'static str> {
         let has_both = self.data.rows.iter().any(|row| row.observables().count() > 1);
-        (!has_both && !self.data.has(Observable::Reflected)).then_some(
+        (self.film == 0 && !has_both && !self.data.has(Observable::Reflected)).then_some(
             "add reflected times of flight (a column tof_reflected_s with its errors), or ratios of \
              the returning to the passing peak (--use incident,returning-ratio)",
         )
@@ -154,7 +187,8 @@ impl Gauge {
                 found.probability
             )
         });
-        let fails = rejected.is_some() || verdict.allowed().next().is_none();
+        let none = self.film == 0 && verdict.allowed().next().is_none();
+        let fails = rejected.is_some() || none;
         let can_be_loaded = fails && self.wet.experiment.get(PUSH).is_ok();
         let has_reflected = self.data.has(Observable::Reflected);
         let options = [

@@ -1,7 +1,7 @@
 //! K and A of the wet contacts, speed by speed.
 
+use super::Gauge;
 use super::branches::{Chosen, ENOUGH, Row, smoothest};
-use super::{CONTACT, Gauge};
 use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::Data;
 use crate::goodness::LEAST_BY_CHANCE;
@@ -11,7 +11,7 @@ use crate::{Covariance, DataRow, Fitting, InferError, Loss, Parameter, Problem, 
 use hertzchain_measure::signal::ChiSquare;
 use rayon::prelude::*;
 
-/// K and A of the wet contacts at one speed of the data.
+/// K and A of the wet contacts, or the first number of a film, at one speed of the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WetRow {
     /// Line of the wet table.
@@ -115,6 +115,8 @@ impl Contact {
 enum Free {
     Both,
     StiffnessAlone,
+    /// The first number of a film.
+    Film,
 }
 
 /// A solution of a row with the fit's results.
@@ -163,6 +165,7 @@ impl Gauge {
 
     fn free(&self, row: usize) -> Free {
         match self.data.rows[row].observables().count() {
+            _ if self.film > 0 => Free::Film,
             1 => Free::StiffnessAlone,
             _ => Free::Both,
         }
@@ -207,7 +210,7 @@ impl Gauge {
         };
         Ok(Contact {
             combination: match self.free(row) {
-                Free::Both => None,
+                Free::Both | Free::Film => None,
                 Free::StiffnessAlone => Some(self.combination(row, first.ln.map(f64::exp))?),
             },
             first,
@@ -221,13 +224,13 @@ impl Gauge {
     fn row_problem(&self, row: usize, (free, at): (Free, [f64; 2]), dry: &[f64]) -> CurveProblem {
         let data = Data { rows: vec![self.data.rows[row].clone()], ..self.data.clone() };
         let numbers = &self.wet.numbers;
-        let contact = numbers[numbers.len() - CONTACT..].iter();
+        let contact = numbers[numbers.len() - self.contact_numbers()..].iter();
         let contact = contact.flat_map(|number| number.parameters(&[])).zip(at);
         let mut start: Vec<Parameter> = contact
             .map(|(parameter, value)| Parameter { start: value, scale: value, ..parameter })
             .collect();
         // Shots through contacts that hardly move take ages.
-        if let Some(relaxation) = start.last_mut() {
+        if let (Some(relaxation), 0) = (start.last_mut(), self.film) {
             let [lower, upper] = self.scanned_s();
             relaxation.start = relaxation.start.clamp(lower, upper);
             (relaxation.lower, relaxation.upper) = (lower, upper);
@@ -237,10 +240,10 @@ impl Gauge {
         let common = dry.iter().copied().take(self.common());
         let mut supplies: Vec<Supply> = common.chain(own).map(Supply::Fixed).collect();
         supplies.push(Supply::Free(0));
-        supplies.push(match free {
+        supplies.extend((start.len() > 1).then_some(match free {
             Free::Both => Supply::Free(1),
-            Free::StiffnessAlone => Supply::Fixed(at[1]),
-        });
+            Free::StiffnessAlone | Free::Film => Supply::Fixed(at[1]),
+        }));
         start.truncate(if free == Free::Both { 2 } else { 1 });
         let curve = MeasuredCurve::new(self.wet.clone(), data).supplied(supplies);
         CurveProblem::unchecked(start, vec![curve])
@@ -268,7 +271,7 @@ impl Gauge {
     fn solutions(&self, row: usize, shifted: &[Vec<f64>]) -> Solved {
         let free = self.free(row);
         let (starts, is_complete) = match free {
-            Free::StiffnessAlone => (vec![self.dry_contact], None),
+            Free::StiffnessAlone | Free::Film => (vec![self.contact], None),
             Free::Both => {
                 let (starts, is_complete) = self.starts(row);
                 (starts, Some(is_complete))
@@ -281,14 +284,14 @@ impl Gauge {
 
     /// The smallest and the largest A in s among which solutions are looked for.
     pub fn scanned_s(&self) -> [f64; 2] {
-        let low = self.dry_contact[1] * LEAST_TIMES_DRY;
+        let low = self.contact[1] * LEAST_TIMES_DRY;
         [low, low * (STEPS as f64 * STEP).exp()]
     }
 
     /// K and A from which every solution of a row is near: the minima over A of chi-square, K at its
     /// best for each A. Also whether the model has a curve at every A.
     fn starts(&self, row: usize) -> (Vec<[f64; 2]>, bool) {
-        let [stiffness, relaxation] = self.dry_contact;
+        let [stiffness, relaxation] = self.contact;
         let problem =
             self.row_problem(row, (Free::Both, [stiffness, relaxation]), &self.dry_fit.point);
         let merit = Merit::new(&problem, Loss::Squares);
@@ -349,7 +352,7 @@ impl Gauge {
         Ok(GaugeSolution {
             chi_square: match free {
                 Free::Both => allowing(&fit_result.residuals, &slopes, &moves),
-                Free::StiffnessAlone => fit_result.chi_square(),
+                Free::StiffnessAlone | Free::Film => fit_result.chi_square(),
             },
             is_beyond: free == Free::Both && fit_result.is_bound(1),
             pair: Pair {

@@ -95,9 +95,9 @@ impl Gauge {
     pub fn verdict(&self, oils: &[Oil]) -> Result<Verdict, InferError> {
         let experiment = &self.wet.experiment;
         let own = &self.wet.numbers;
-        let mut numbers: Vec<FreeNumber> = own[..own.len() - CONTACT].to_vec();
-        for name in ["wet.K:each", "wet.A:each"] {
-            numbers.push(FreeNumber::find(experiment, name, None)?);
+        let mut numbers: Vec<FreeNumber> = own[..own.len() - self.contact_numbers()].to_vec();
+        for name in CONTACT {
+            numbers.push(FreeNumber::find(experiment, &format!("{name}:each"), None)?);
         }
         let model = Model::new(experiment, FreeNumbers::new(numbers)?)?;
         let wet = MeasuredCurve::new(model.with_accuracy(self.wet.accuracy), self.data.clone());
@@ -112,19 +112,47 @@ impl Gauge {
         Ok(Verdict { matches, failed })
     }
 
+    /// The film's numbers over both curves together, with the dry contacts' and the nuisance
+    /// parameters.
+    ///
+    /// # Errors
+    /// What is in the way of the fit.
+    pub fn film(&self) -> Result<(CurveProblem, Fit), InferError> {
+        let speeds = self.data.speeds_m_s();
+        let numbers = &self.wet.numbers;
+        let film = numbers[numbers.len() - self.film..].iter();
+        let more =
+            self.wet_own(&speeds).into_iter().chain(film.flat_map(|n| n.parameters(&speeds)));
+        let problem =
+            self.joint(MeasuredCurve::new(self.wet.clone(), self.data.clone()), more, &[]);
+        let fit = fit(&problem, &Fitting::default())?;
+        Ok((problem, fit))
+    }
+
+    /// Both curves: the wet one with the numbers that both share, then its own, `more`, then fixed ones.
+    fn joint(
+        &self,
+        wet: MeasuredCurve,
+        more: impl Iterator<Item = Parameter>,
+        fixed: &[f64],
+    ) -> CurveProblem {
+        let pairs = self.dry.parameters().iter().zip(&self.dry_fit.point);
+        let dry = pairs.map(|(parameter, value)| Parameter { start: *value, ..parameter.clone() });
+        let parameters: Vec<Parameter> = dry.chain(more).collect();
+        let of_wet = (0..self.common()).chain(self.dry_fit.point.len()..parameters.len());
+        let supplies = of_wet.map(Supply::Free).chain(fixed.iter().copied().map(Supply::Fixed));
+        let wet = wet.supplied(supplies.collect());
+        CurveProblem::unchecked(parameters, vec![self.dry.curves[0].clone(), wet])
+    }
+
     fn compare(&self, oil: &Oil, wet: &MeasuredCurve) -> Result<Match, InferError> {
         let count = self.dry_fit.point.len();
         let speeds = self.data.speeds_m_s();
         let (stiffness, relaxation): (Vec<f64>, Vec<f64>) =
             speeds.iter().map(|speed| oil.contact(self.radius_m, *speed)).unzip();
         let own = self.wet_own(&speeds);
-        let of_wet = (0..self.common()).chain(count..count + own.len()).map(Supply::Free);
-        let contacts = stiffness.into_iter().chain(relaxation).map(Supply::Fixed);
-        let wet = wet.clone().supplied(of_wet.chain(contacts).collect());
-        let pairs = self.dry.parameters().iter().zip(&self.dry_fit.point);
-        let dry = pairs.map(|(parameter, value)| Parameter { start: *value, ..parameter.clone() });
-        let parameters = dry.chain(own.clone()).collect();
-        let joint = CurveProblem::unchecked(parameters, vec![self.dry.curves[0].clone(), wet]);
+        let contacts: Vec<f64> = stiffness.into_iter().chain(relaxation).collect();
+        let joint = self.joint(wet.clone(), own.iter().cloned(), &contacts);
         // Two or three numbers that start at their dry values, to a hundredth of what would change a
         // verdict.
         let how = Fitting { tolerance: 0.01, iterations: 20, ..Fitting::default() };

@@ -26,7 +26,7 @@ static FREE: LazyLock<[String; 2]> = LazyLock::new(|| ["aisi316.eta", "dry.B"].m
 
 /// A gauge's chains with the paper's free numbers.
 pub(crate) fn chains<'a>(dry: &'a Experiment, wet: &'a Experiment) -> Chains<'a> {
-    Chains { dry, wet, free: &*FREE, own: &[], systematic: &[], accuracy: 1e-5 }
+    Chains { dry, wet, free: &*FREE, own: &[], film: &[], systematic: &[], accuracy: 1e-5 }
 }
 
 /// Scatter of a shot's speed in m/s, and of its times in s: half a sample of the

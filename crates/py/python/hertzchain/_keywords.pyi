@@ -132,6 +132,7 @@ class GaugeOptions(TypedDict, total=False):
     dry_model: Path | None
     dry_free: Quantity | Iterable[Quantity]
     own: Quantity | Iterable[Quantity] | None
+    film: Quantity | Iterable[Quantity] | None
     systematic: Mapping[str, Any] | None
     oils: Path | None
     accuracy: Quantity

@@ -5,8 +5,8 @@ use crate::inference::references;
 use crate::program::{
     chi_square_text, digits, estimate, format, heading, lines, misfit, percent, with_error,
 };
-use hertzchain_infer::Problem;
 use hertzchain_infer::gauge::{Contact, NEVER, Pair, WetRow, is_determined};
+use hertzchain_infer::{Covariance, CurveProblem, Fit, Goodness, Identifiability, Problem, titled};
 
 pub(super) fn text(run_gauge: &GaugeResult) -> String {
     let doubts = doubts(run_gauge);
@@ -24,6 +24,9 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
         contacts(run_gauge),
         lines(references(wet_model))
     );
+    if let Some(film) = &run_gauge.film {
+        return text + &format!("\n{}\n{}{}\n", heading("Film"), whole(film), run_gauge.sentence());
+    }
     if let Some(add) = run_gauge.gauge.to_add() {
         text += &format!(
             "One number a speed determines one combination of K and A. To determine both, {add}.\n"
@@ -66,6 +69,19 @@ fn dry(run_gauge: &GaugeResult) -> String {
     let chi_square = gauge.dry_goodness().chi_square;
     let chi_square = chi_square.map_or(String::new(), |found| chi_square_text(found) + "\n");
     format::pairs(rows) + &chi_square
+}
+
+/// All numbers of both curves, and what they leave open.
+fn whole((problem, fit): &(CurveProblem, Fit)) -> String {
+    let sd = Covariance::new(problem.parameters(), fit).sd;
+    let values = problem.parameters().iter().zip(fit.point.iter().zip(&sd));
+    let rows = values.map(|(of, (value, sd))| (of.name.clone(), estimate(of, *value, *sd)));
+    let label = |at: usize| problem.residual_label(at);
+    let identified = Identifiability::new(problem.parameters(), fit, label);
+    let open =
+        identified.unidentifiable.into_iter().map(|one| format!("not determined: {}", one.words));
+    let chi_square = Goodness::new(problem, fit).chi_square.map(chi_square_text);
+    format::pairs(rows) + &lines(open.chain(chi_square))
 }
 
 /// K in GN/m^1.5 and A in ns, with their errors.
@@ -111,6 +127,10 @@ fn contacts(run_gauge: &GaugeResult) -> String {
     let lines = |row: &WetRow| -> Vec<Vec<String>> {
         let speed = digits(row.speed_m_s, 4);
         let lines = match &row.contact {
+            Ok(contact) if run_gauge.film.is_some() => {
+                let [(value, sd), _] = contact.first.estimates();
+                vec![[reported(value, sd), String::new(), String::new()]]
+            }
             Ok(contact) => pairs(contact),
             Err(why) => vec![["–".to_owned(), "–".to_owned(), why.clone()]],
         };
@@ -119,9 +139,12 @@ fn contacts(run_gauge: &GaugeResult) -> String {
         whole.map(|(speed, line)| std::iter::once(speed).chain(line).collect()).collect()
     };
     let rows: Vec<Vec<String>> = run_gauge.rows.iter().flat_map(lines).collect();
-    let head = ["v (m/s)", "K (GN/m^1.5)", "A (ns)", ""];
-    let few = rows.iter().all(|row| row[3].is_empty());
-    let shown = if few { 3 } else { 4 };
+    let film = run_gauge.gauge.film_number().map(|of| titled(&of.name, &of.unit));
+    let first = film.as_deref().unwrap_or("K (GN/m^1.5)");
+    let second = if film.is_some() { "" } else { "A (ns)" };
+    let head = ["v (m/s)", first, second, ""];
+    let filled = (2..=3).filter(|at| rows.iter().any(|row| !row[*at].is_empty()));
+    let shown = filled.last().map_or(2, |last| last + 1);
     format::table(&head[..shown], rows.iter().map(|row| &row[..shown]))
 }
 
