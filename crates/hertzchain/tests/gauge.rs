@@ -53,3 +53,50 @@ fn a_dry_curve_that_is_not_its_models_is_told_before_all_else() {
     let text = reported(&curve(&folder, "dry"));
     assert!(!text.contains("warning"), "{text}");
 }
+
+/// A row of six, with a film or without.
+const ROW: &str = "[materials.steel]\nyoung_modulus = \"213 GPa\"\npoisson_ratio = 0.3\n\
+    shear_viscosity = \"3.2e4 Pa s\"\n\
+    [liquid]\nkinematic_viscosity = \"120 cSt\"\ndensity = \"870 kg/m^3\"\npressure_viscosity = \"16 1/GPa\"\n\
+    [striker]\nspeed = \"0.3 m/s\"\n\
+    [[beads]]\ncount = 6\nradius = \"6.35 mm\"\nmass = \"8.54 g\"\nmaterial = \"steel\"\n\
+    [[contacts]]\nto = 1\nlaws = [\"elastic_hertz\", \"damping_viscoelastic\"]\n\
+    [[contacts]]\nfrom = 2\nwet = true\nlaws = [\"elastic_hertz\", \"damping_viscoelastic\", \"film_entrained\"]\n\
+    [near_end]\npush = \"constant\"\nforce = \"0.24 N\"\n[far_end]\nkind = \"half-bead\"\n[sensors]\nbead = 2\n";
+
+#[test]
+fn the_gauge_frees_a_films_viscosity_in_place_of_k_and_a() {
+    let folder = folder("gauge-film");
+    let wet = file(&folder, "wet.toml", ROW);
+    let dry = ROW.replace(", \"film_entrained\"", "").replace("wet = true\n", "");
+    let dry = file(&folder, "dry.toml", &dry);
+    let swept = |model: &str, name: &str| {
+        let out = folder.join(name).to_str().unwrap().to_owned();
+        let sweep = ["sweep", model, "--speeds", "0.3,0.5,1", "--accuracy", "1e-5", "--out", &out];
+        assert!(run(&sweep).status.success());
+        format!("{out}/sweep.csv")
+    };
+    let (wet_table, dry_table) = (swept(&wet, "wet"), swept(&dry, "dry"));
+    let out = folder.join("out").to_str().unwrap().to_owned();
+    let gauge = ["gauge", &wet_table, "--dry", &dry_table, "-m", &wet, "--dry-model", &dry];
+    let film =
+        ["--film", "viscosity", "--dry-free", "eta", "--use", "incident", "--json", "-o", &out];
+    let found = json(&with_errors(&[&gauge[..], &film].concat()));
+    let parameters = found["film"]["parameters"].as_array().unwrap();
+    let viscosity = parameters.iter().find(|of| of["name"] == "viscosity").unwrap();
+    let contacts = found["contacts"].as_array().unwrap();
+    assert_eq!(contacts.len(), 3);
+    for of in contacts.iter().map(|row| &row["film"]).chain([viscosity]) {
+        let [value, error] = ["value", "standard_error"].map(|key| of[key].as_f64().unwrap());
+        // The tables are the model's own: 1e-5 of a time against its error.
+        assert!((value - 120e-6 * 870.0).abs() < 0.2 * error, "{of}");
+        assert_eq!(of["unit"], "Pa s");
+    }
+    assert_eq!(found["oils"].as_array().unwrap().len(), 0);
+    assert!(found["verdict"].as_str().unwrap().starts_with("One film"), "{found}");
+    let table = std::fs::read_to_string(format!("{out}/contacts.csv")).unwrap();
+    assert!(table.lines().nth(1).unwrap().contains("viscosity"), "{table}");
+    let power = ["--film", "viscosity:power"];
+    let refused = run(&with_errors(&[&gauge[..], &power].concat()));
+    assert_eq!(refused.status.code(), Some(2));
+}

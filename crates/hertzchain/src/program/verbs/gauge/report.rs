@@ -143,8 +143,8 @@ fn contacts(run_gauge: &GaugeResult) -> String {
     let first = film.as_deref().unwrap_or("K (GN/m^1.5)");
     let second = if film.is_some() { "" } else { "A (ns)" };
     let head = ["v (m/s)", first, second, ""];
-    let filled = (2..=3).filter(|at| rows.iter().any(|row| !row[*at].is_empty()));
-    let shown = filled.last().map_or(2, |last| last + 1);
+    let filled = (2..=3).rfind(|at| rows.iter().any(|row| !row[*at].is_empty()));
+    let shown = filled.map_or(2, |last| last + 1);
     format::table(&head[..shown], rows.iter().map(|row| &row[..shown]))
 }
 
