@@ -224,7 +224,8 @@ fn a_candidate_whose_derivatives_jump_says_nothing_and_hides_nothing() {
         doubts: vec![2e4; 2],
         cost: 1.0,
     };
-    let alone = design(&data.parameters, &found, &[useful.clone()], &[0, 1], 1).unwrap();
+    let alone =
+        design(&data.parameters, &found, std::slice::from_ref(&useful), &[0, 1], 1).unwrap();
     let both = design(&data.parameters, &found, &[useful, jumping], &[0, 1], 1).unwrap();
     assert_eq!((&both.ranked[0], &both.before), (&alone.ranked[0], &alone.before));
     // By half its derivative by b it may be wrong: the other half may be right.
