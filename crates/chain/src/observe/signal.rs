@@ -292,13 +292,16 @@ impl Signal {
     /// Adds the maxima of one step, and the one between it and the last.
     fn look_for_maxima(&mut self, piece: &Piece<'_>, stretch: &Stretch) {
         let slopes = stretch.end_slopes();
-        let [mut start_slope, end_slope] = [(0.0, slopes[0]), (1.0, slopes[1])]
+        let [mut start_slope, mut end_slope] = [(0.0, slopes[0]), (1.0, slopes[1])]
             .map(|(theta, slope)| self.slope(piece, theta, slope));
         let [start, .., end] = stretch.values;
         let floor = JUMP.max(OF_CUT * piece.cut_tolerance()) * self.largest;
         let sharp_rises = piece.sharp_rises(self.sensor);
         if sharp_rises.contains(&Some(0.0)) {
             start_slope = first_change(piece, self.sensor, floor).unwrap_or(start_slope);
+        }
+        if end_slope <= 0.0 && piece.parts_at_end(self.sensor) {
+            end_slope = last_rise(piece, self.sensor, floor).unwrap_or(end_slope);
         }
         // Before a signal is first seen, and after silence, it was 0.
         let (time_s, value, slope) = self.before.unwrap_or((stretch.start_s, 0.0, 0.0));
@@ -406,6 +409,14 @@ fn first_change(piece: &Piece<'_>, sensor: Sensor, floor: f64) -> Option<f64> {
     let start = piece.signal(sensor, 0.0);
     let change = |halvings: i32| piece.signal(sensor, 0.5_f64.powi(halvings)) - start;
     (0..SHARPEST).rev().map(change).find(|change| change.abs() > floor)
+}
+
+/// By how much a signal that falls rises again at the end of a step, if by more than a floor.
+fn last_rise(piece: &Piece<'_>, sensor: Sensor, floor: f64) -> Option<f64> {
+    let end = piece.signal(sensor, 1.0);
+    let rise = |halvings: i32| end - piece.signal(sensor, 1.0 - 0.5_f64.powi(halvings));
+    let rises = (0..SHARPEST).map(|halvings| (rise(halvings), rise(halvings + 1)));
+    rises.filter(|(far, near)| near > far && *near > floor).map(|(_, near)| near).next()
 }
 
 /// Halvings of a step in which a maximum behind an infinite slope is looked for.

@@ -147,6 +147,15 @@ impl Piece<'_> {
         })
     }
 
+    /// Whether a contact that a sensor shows opens at the end of the step, where forces that pulled
+    /// rise to 0 with an infinite slope.
+    pub(crate) fn parts_at_end(&self, sensor: Sensor) -> bool {
+        self.closed_contacts(sensor).into_iter().flatten().any(|contact| {
+            let (overlap, rate) = self.overlap(contact, 1.0);
+            rate < 0.0 && overlap < -NEAR_TOUCH * rate * self.step_s
+        })
+    }
+
     /// Where in the step each contact that a sensor shows begins to be released: some laws' forces
     /// fall there with an infinite slope in rate.
     pub(crate) fn sharp_falls(&self, sensor: Sensor) -> [Option<f64>; 3] {
