@@ -188,7 +188,7 @@ fn an_oily_contact_at_rest_is_that_of_hertz() {
     let pulse = Motion::Pulse { amplitude_m: 5e-6, duration_s: 6e-5 };
     let (trace, _) = trace(&pressed(10.0, film(0.1, 0.0), pulse), 1e-9, 1e-3, 10);
     let last_n = trace.columns[0][10];
-    // Of a peak of 130 N; the rim relaxes as a power of time.
+    // Of a peak of 130 N; the squeezed rim relaxes as a power of time.
     assert!(last_n.abs() < 1e-4, "{last_n}");
 }
 

@@ -331,7 +331,7 @@ impl ContactState for EntrainedFilm {
         let push = 2.0 / 3.0 * radius * overlap_m;
         self.rings.truncate(1);
         self.rings.push(Ring { radius, overlap: overlap_m, push, work: 0.4 * push * overlap_m });
-        (self.advances, self.drawn, self.rate) = (true, false, 0.0);
+        (self.advances, self.drawn, self.rate, self.film) = (true, false, 0.0, 0.0);
     }
 
     fn force_and_rates(&self, numbers_m: [f64; 3], contact: Closed) -> (f64, [f64; 3]) {
@@ -375,6 +375,10 @@ impl ContactState for EntrainedFilm {
     fn accept(&mut self, numbers_m: [f64; 3], contact: Closed) -> ([f64; 3], bool) {
         let [unknown, moved, worked] = numbers_m;
         let was = (self.advances, self.drawn);
+        if contact.overlap == 0.0 {
+            self.begin(0.0);
+            return ([0.0; 3], was != (true, false));
+        }
         let mut numbers = self.accept_edge([unknown.max(0.0), moved, worked], contact);
         let relaxed = unknown <= TURNS * SLIGHT * self.radius;
         self.drawn = relaxed && contact.rate < -TURNS * self.rate.abs();

@@ -262,16 +262,18 @@ impl<'a> Smoothed<'a> {
     /// side ends before at the valley to another fragment.
     pub(super) fn sides(&self, of: &SmoothedMaximum) -> (f64, f64) {
         let (left, right) = self.reach(of, 0.5 * of.height);
-        let left =
-            self.valley(of, (left.ceil() as usize..of.at).rev()).map_or(left, |at| at as f64);
-        let right = self.valley(of, of.at..right as usize).map_or(right, |at| at as f64);
         let seen = right - left;
         let n = self.length as f64;
         // Variances add: two averages have (n² − 1)/6; a bell's width is 2.355 deviations.
         let added = 5.545 * (n * n - 1.0) / 6.0;
         let share = (1.0 - added / (seen * seen)).max(0.25).sqrt();
         let top = of.at as f64;
-        (share * (top - left), share * (right - top))
+        let to_valley = |way: &mut dyn Iterator<Item = usize>| {
+            self.valley(of, way).map_or(f64::INFINITY, |at| top - at as f64).abs()
+        };
+        let rise = to_valley(&mut (left.ceil() as usize..of.at).rev());
+        let fall = to_valley(&mut (of.at..right as usize));
+        ((share * (top - left)).min(rise), (share * (right - top)).min(fall))
     }
 
     /// On a way away from a maximum, the least height before the signal has risen by a share of the

@@ -32,7 +32,8 @@ impl ChannelView<'_> {
     pub(super) fn fall_under(&self, pulse: &Pulse, time: f64) -> f64 {
         let least = if self.wall.is_some() { DEVIATION } else { BEFORE };
         let share = least + (1.0 - least) * pulse.asymmetry();
-        (share * self.largest_fall_under(pulse, time)).hypot(self.risen_under(pulse, time))
+        let fall = share * self.largest_fall_under(pulse, time);
+        fall.hypot(self.risen_under(pulse, time)).copysign(fall)
     }
 
     /// Standard deviation of the fall, a sample, of what rose before a reflected pulse: a force of
