@@ -1,6 +1,7 @@
 //! gauge at the command line.
 
-use crate::common::{curve, file, folder, json, run, with_errors};
+use crate::common::{curve, file, folder, json, refused, run, with_errors};
+use std::path::Path;
 
 #[test]
 fn the_gauge_knows_its_oils_and_says_when_it_does_not() {
@@ -64,19 +65,22 @@ const ROW: &str = "[materials.steel]\nyoung_modulus = \"213 GPa\"\npoisson_ratio
     [[contacts]]\nfrom = 2\nwet = true\nlaws = [\"elastic_hertz\", \"damping_viscoelastic\", \"film_entrained\"]\n\
     [near_end]\npush = \"constant\"\nforce = \"0.24 N\"\n[far_end]\nkind = \"half-bead\"\n[sensors]\nbead = 2\n";
 
+/// Models of the wet and the dry row, each with its curve at three speeds.
+fn film_rows(folder: &Path) -> [[String; 2]; 2] {
+    let without = ROW.replace(", \"film_entrained\"", "").replace("wet = true\n", "");
+    [("wet", ROW), ("dry", &without)].map(|(name, text)| {
+        let model = file(folder, &format!("{name}.toml"), text);
+        let out = folder.join(name).to_str().unwrap().to_owned();
+        let sweep = ["sweep", &model, "--speeds", "0.3,0.5,1", "--accuracy", "1e-5", "--out", &out];
+        assert!(run(&sweep).status.success());
+        [model, format!("{out}/sweep.csv")]
+    })
+}
+
 #[test]
 fn the_gauge_frees_a_films_viscosity_in_place_of_k_and_a() {
     let folder = folder("gauge-film");
-    let wet = file(&folder, "wet.toml", ROW);
-    let dry = ROW.replace(", \"film_entrained\"", "").replace("wet = true\n", "");
-    let dry = file(&folder, "dry.toml", &dry);
-    let swept = |model: &str, name: &str| {
-        let out = folder.join(name).to_str().unwrap().to_owned();
-        let sweep = ["sweep", model, "--speeds", "0.3,0.5,1", "--accuracy", "1e-5", "--out", &out];
-        assert!(run(&sweep).status.success());
-        format!("{out}/sweep.csv")
-    };
-    let (wet_table, dry_table) = (swept(&wet, "wet"), swept(&dry, "dry"));
+    let [[wet, wet_table], [dry, dry_table]] = film_rows(&folder);
     let out = folder.join("out").to_str().unwrap().to_owned();
     let gauge = ["gauge", &wet_table, "--dry", &dry_table, "-m", &wet, "--dry-model", &dry];
     let film =
@@ -94,9 +98,30 @@ fn the_gauge_frees_a_films_viscosity_in_place_of_k_and_a() {
     }
     assert_eq!(found["oils"].as_array().unwrap().len(), 0);
     assert!(found["verdict"].as_str().unwrap().starts_with("One film"), "{found}");
+    // Three wet times for one viscosity; nothing was scanned.
+    assert_eq!(found["film"]["freedom"], 2);
+    assert!(found.get("scanned_s").is_none(), "{found}");
     let table = std::fs::read_to_string(format!("{out}/contacts.csv")).unwrap();
     assert!(table.lines().nth(1).unwrap().contains("viscosity"), "{table}");
     let power = ["--film", "viscosity:power"];
-    let refused = run(&with_errors(&[&gauge[..], &power].concat()));
-    assert_eq!(refused.status.code(), Some(2));
+    refused(&with_errors(&[&gauge[..], &power].concat()));
+    let oils = ["--film", "viscosity", "--oils", "oils.csv"];
+    let message = refused(&with_errors(&[&gauge[..], &oils].concat()));
+    assert!(message.contains("'--film <NAMES>' cannot be used with '--oils <FILE>'"), "{message}");
+}
+
+#[test]
+fn one_wet_row_gives_a_film_and_no_verdict() {
+    let folder = folder("gauge-film-row");
+    let [[wet, wet_table], [dry, dry_table]] = film_rows(&folder);
+    let table = std::fs::read_to_string(&wet_table).unwrap();
+    let lines: Vec<&str> = table.lines().take(2).collect();
+    let one = file(&folder, "one.csv", &lines.join("\n"));
+    let gauge = ["gauge", &one, "--dry", &dry_table, "-m", &wet, "--dry-model", &dry];
+    let more = ["--film", "pressure_viscosity", "--dry-free", "eta", "--use", "incident"];
+    let text = String::from_utf8(run(&with_errors(&[&gauge[..], &more].concat())).stdout).unwrap();
+    let last = text.lines().last().unwrap();
+    assert!(last.starts_with("No number is left to test the film by"), "{text}");
+    // Over the power of ten that its unit asks for.
+    assert!(!text.contains("0.0000") && text.matches(")·1e-8").count() == 2, "{text}");
 }

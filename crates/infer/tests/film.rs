@@ -1,8 +1,8 @@
 //! The viscosity of a film of oil, from times of flight and back.
 
-use crate::common::model;
+use crate::common::{chains, model};
 use hertzchain_experiment::Experiment;
-use hertzchain_infer::gauge::{Chains, Gauge};
+use hertzchain_infer::gauge::{Chains, Gauge, LEAST_PROBABILITY};
 use hertzchain_infer::{
     Choices, Covariance, CurveProblem, Data, DataRow, ExpectedErrors, Fitting, Freedom, Goodness,
     Model, Problem, Speeds, design, fit, ways,
@@ -64,11 +64,20 @@ fn a_film_gives_its_viscosity_back_within_its_error() {
     assert!(sd < 0.3 * exact, "{sd}");
 }
 
-/// Dry and wet incident times at three speeds, the wet ones of films of these viscosities.
-fn gauge(viscosities: [f64; 3]) -> Gauge {
-    let wet = Experiment::from_text("film.toml", ROW).unwrap();
+/// Speeds of the wet rows, and by how many standard errors their times are off.
+const OFF: [(f64, f64); 3] = [(0.3, 0.5), (0.5, -0.4), (1.0, 0.3)];
+
+/// The wet row and the dry one.
+fn rows() -> [Experiment; 2] {
     let without = ROW.replace(", \"film_entrained\"", "").replace("wet = true\n", "");
-    let dry = Experiment::from_text("dry.toml", &without).unwrap();
+    [("film.toml", ROW), ("dry.toml", &without)]
+        .map(|(name, text)| Experiment::from_text(name, text).unwrap())
+}
+
+/// Wet incident times at up to three speeds, of films of these viscosities, and dry ones, off by
+/// these numbers of standard errors.
+fn gauge(viscosities: &[f64], off: &[(f64, f64)]) -> Gauge {
+    let [wet, dry] = rows();
     let chains = Chains {
         dry: &dry,
         wet: &wet,
@@ -78,35 +87,94 @@ fn gauge(viscosities: [f64; 3]) -> Gauge {
         film: &["viscosity".to_owned()],
         accuracy: 1e-5,
     };
-    let (model, off) = (model(&wet, &["viscosity"]), [(0.3, 0.5), (0.5, -0.4), (1.0, 0.3)]);
-    let rows = viscosities.iter().zip(&off);
+    let model = model(&wet, &["viscosity"]);
+    let rows = viscosities.iter().zip(&OFF);
     let rows = rows.map(|(viscosity, off)| measured(&model, &[*viscosity], &[*off]).rows.remove(0));
     let data = Data { rows: rows.collect(), ..measured(&model, &[0.1], &[]) };
     let eta = crate::common::model(&dry, &["eta"]);
-    Gauge::new(&chains, measured(&eta, &[3.2e4], &off), data).unwrap()
+    Gauge::new(&chains, measured(&eta, &[3.2e4], off), data).unwrap()
 }
 
 #[test]
 fn the_gauge_gives_a_films_viscosity_at_each_speed_and_over_all() {
-    let (gauge, mut errors) = (gauge([0.08; 3]), Vec::new());
+    let (gauge, mut errors) = (gauge(&[0.08; 3], &OFF), Vec::new());
     for row in gauge.rows() {
         let (value, sd) = row.contact.unwrap().first.estimates()[0];
         // The time is off by half its error, the dry contacts are known by three times.
         assert!((value - 0.08).abs() < 2.0 * sd && sd < 0.08, "{value} ± {sd}");
         errors.push(sd);
     }
-    let (problem, found) = gauge.film().unwrap();
+    let (problem, found, chi_square) = gauge.film().unwrap();
     let sd = Covariance::new(problem.parameters(), &found).sd;
     let at = problem.parameters().iter().position(|p| p.name == "viscosity").unwrap();
     assert!((found.point[at] - 0.08).abs() < 2.0 * sd[at], "{:?} ± {sd:?}", found.point);
     assert!(errors.iter().all(|of_one| sd[at] < *of_one), "{sd:?} {errors:?}");
-    assert!(Goodness::new(&problem, &found).chi_square.unwrap().probability > 0.1);
+    // Three wet times for one viscosity.
+    let chi_square = chi_square.unwrap();
+    assert!(chi_square.freedom == 2 && chi_square.probability > 0.1, "{chi_square:?}");
 }
 
 #[test]
 fn the_gauge_rejects_one_film_where_speeds_need_different_ones() {
-    let (problem, found) = gauge([0.04, 0.08, 0.2]).film().unwrap();
-    assert!(Goodness::new(&problem, &found).chi_square.unwrap().probability < 0.01);
+    let (_, _, chi_square) = gauge(&[0.04, 0.08, 0.2], &OFF).film().unwrap();
+    assert!(chi_square.unwrap().probability < LEAST_PROBABILITY);
+}
+
+/// Sixty rows of these errors, in turn positive and negative.
+fn many_rows(off: f64) -> Vec<(f64, f64)> {
+    let row = |at: usize| (OFF[at % 3].0, if at.is_multiple_of(2) { off } else { -off });
+    (0..60).map(row).collect()
+}
+
+#[test]
+fn dry_rows_do_not_hide_a_misfit_of_the_wet_ones() {
+    let (problem, found, chi_square) = gauge(&[0.06, 0.08, 0.11], &many_rows(0.3)).film().unwrap();
+    let both = Goodness::new(&problem, &found).chi_square.unwrap();
+    assert!(both.probability > LEAST_PROBABILITY, "{both:?}");
+    let chi_square = chi_square.unwrap();
+    assert!(chi_square.probability < LEAST_PROBABILITY, "{chi_square:?}");
+    assert_eq!(chi_square.freedom, 2);
+}
+
+#[test]
+fn a_dry_curve_off_its_model_is_not_the_films_fault() {
+    let (problem, found, chi_square) = gauge(&[0.08; 3], &many_rows(2.0)).film().unwrap();
+    let both = Goodness::new(&problem, &found).chi_square.unwrap();
+    assert!(both.probability < LEAST_PROBABILITY, "{both:?}");
+    let chi_square = chi_square.unwrap();
+    assert!(chi_square.probability > 0.1, "{chi_square:?}");
+}
+
+#[test]
+fn one_wet_row_leaves_nothing_to_test_a_film_by() {
+    let (problem, found, chi_square) = gauge(&[0.08], &OFF).film().unwrap();
+    assert!(chi_square.is_none(), "{chi_square:?}");
+    // The dry curve has degrees of freedom of its own.
+    assert!(Goodness::new(&problem, &found).chi_square.is_some());
+}
+
+#[test]
+fn a_film_has_no_other_numbers_than_its_own() {
+    let [wet, dry] = rows();
+    let eta = crate::common::model(&dry, &["eta"]);
+    let data = || measured(&eta, &[3.2e4], &OFF[..1]);
+    let refused = |wet: &Experiment, names: &[&str]| {
+        let film: Vec<String> = names.iter().map(ToString::to_string).collect();
+        let free = ["eta".to_owned()];
+        let chains = Chains { free: &free, film: &film, ..chains(&dry, wet) };
+        Gauge::new(&chains, data(), data()).err().unwrap().to_string()
+    };
+    for name in ["speed_scale", "delay", "wet.K", "Y"] {
+        let message = refused(&wet, &["viscosity", name]);
+        let expected = "is no number of a film: expected viscosity or pressure_viscosity";
+        assert_eq!(message, format!("{name} {expected}"));
+    }
+    assert!(refused(&wet, &["viscosity:each"]).contains("do not depend on speed"));
+    let without = ROW.replace(", \"film_entrained\"", "");
+    let without = Experiment::from_text("plain.toml", &without).unwrap();
+    let message = refused(&without, &["viscosity"]);
+    let expected = "add film_entrained to its wet contacts, or use --preset pump-film";
+    assert!(message.contains("has no film") && message.ends_with(expected), "{message}");
 }
 
 #[test]

@@ -13,6 +13,7 @@ use hertzchain_experiment::Experiment;
 use hertzchain_infer::gauge::{Chains, Gauge, Oil, Verdict, WetRow, known_oils, oils};
 use hertzchain_infer::{CurveProblem, Data, Fit};
 use hertzchain_measure::records::text;
+use hertzchain_measure::signal::ChiSquare;
 use std::path::Path;
 
 /// Everything that the gauge says.
@@ -25,8 +26,9 @@ pub struct GaugeResult {
     pub verdict: Verdict,
     /// The oils it was held against.
     pub oils: Vec<Oil>,
-    /// The film's numbers over both curves together, where they were asked for in place of oils.
-    pub film: Option<(CurveProblem, Fit)>,
+    /// The film's numbers over both curves together and chi-square of the wet data, where they were
+    /// asked for in place of oils.
+    pub film: Option<(CurveProblem, Fit, Option<ChiSquare>)>,
 }
 
 /// Compares known oils with a row's contacts, from times of flight of the wet and of the dry row.

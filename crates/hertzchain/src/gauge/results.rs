@@ -2,8 +2,9 @@
 
 use super::GaugeResult;
 use crate::inference::references_json;
-use hertzchain_infer::gauge::{Pair, WetRow, is_determined};
-use hertzchain_infer::{Covariance, CurveProblem, Fit, Goodness, Identifiability, Problem};
+use hertzchain_infer::gauge::{LEAST_PROBABILITY, Pair, WetRow, is_determined};
+use hertzchain_infer::{Covariance, CurveProblem, Fit, Identifiability, Problem};
+use hertzchain_measure::signal::ChiSquare;
 use serde_json::{Value, json};
 
 /// Everything that is to be said.
@@ -11,14 +12,13 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
     let gauge = &run_gauge.gauge;
     let names = gauge.dry.parameters().iter().enumerate();
     let verdict = &run_gauge.verdict;
-    json!({
+    let mut all = json!({
         "dry": names.map(|(at, parameter)| json!({
             "name": parameter.name, "unit": parameter.unit,
             "value": gauge.dry_fit.point[at], "standard_error": gauge.dry_covariance.sd[at],
         })).collect::<Value>(),
         "dry_chi_square": gauge.dry_fit.chi_square(),
         "references": references_json(&gauge.wet),
-        "scanned_s": gauge.scanned_s(),
         "contacts": run_gauge.rows.iter().map(|of| row(of, run_gauge)).collect::<Value>(),
         "film": run_gauge.film.as_ref().map(film),
         "to_add": gauge.to_add(),
@@ -35,17 +35,22 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
         "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),
         "verdict": run_gauge.sentence(),
         "doubts": gauge.doubts(verdict),
-    })
+    });
+    // A film's numbers are fitted, not scanned.
+    if run_gauge.film.is_none() {
+        all["scanned_s"] = json!(gauge.scanned_s());
+    }
+    all
 }
 
 impl GaugeResult {
     /// The verdict on the oils, or on a film, in a sentence.
     pub(crate) fn sentence(&self) -> String {
-        let Some((problem, fit)) = &self.film else {
+        let Some((_, _, chi_square)) = &self.film else {
             return self.verdict.sentence();
         };
-        match Goodness::new(problem, fit).chi_square {
-            Some(found) if found.probability < REJECTED => format!(
+        match chi_square {
+            Some(found) if found.probability < LEAST_PROBABILITY => format!(
                 "No one film gives the times at all speeds (p = {:.1e}).",
                 found.probability
             ),
@@ -57,20 +62,16 @@ impl GaugeResult {
     }
 }
 
-/// Below this probability a film is rejected, as an oil is.
-const REJECTED: f64 = 0.01;
-
 /// All numbers of both curves, and what they leave open.
-fn film((problem, fit): &(CurveProblem, Fit)) -> Value {
+fn film((problem, fit, found): &(CurveProblem, Fit, Option<ChiSquare>)) -> Value {
     let sd = Covariance::new(problem.parameters(), fit).sd;
     let label = |at: usize| problem.residual_label(at);
     let identified = Identifiability::new(problem.parameters(), fit, label);
-    let found = Goodness::new(problem, fit).chi_square;
     let values = problem.parameters().iter().zip(&fit.point).zip(&sd);
     json!({
         "parameters": values.map(|((parameter, value), sd)| json!({
             "name": parameter.name, "unit": parameter.unit,
-            "value": value, "standard_error": finite(*sd),
+            "value": value, "standard_error": standard_error(*sd),
         })).collect::<Value>(),
         "chi_square": found.map(|of| of.value), "freedom": found.map(|of| of.freedom),
         "probability": found.map(|of| of.probability),
@@ -109,9 +110,9 @@ fn row(row: &WetRow, run_gauge: &GaugeResult) -> Value {
     all
 }
 
-fn number(value: f64, standard_error: f64) -> Value {
+fn number(value: f64, sd: f64) -> Value {
     json!({
-        "value": value, "standard_error": finite(standard_error), "determined": is_determined(value, standard_error),
+        "value": value, "standard_error": standard_error(sd), "determined": is_determined(value, sd),
     })
 }
 
@@ -123,6 +124,11 @@ fn other(pair: &Pair) -> Value {
         "relaxation_time_s": a, "relaxation_time_s_error": finite(a_sd),
         "ln_covariance": pair.covariance.map(|row| row.map(finite)),
     })
+}
+
+/// A standard error; none of a parameter that is not determined or held by a bound.
+fn standard_error(sd: f64) -> Option<f64> {
+    finite(sd).filter(|sd| *sd > 0.0)
 }
 
 fn finite(value: f64) -> Option<f64> {

@@ -396,7 +396,7 @@ pub struct GaugeOptions {
     pub own: Vec<String>,
     /// Numbers of a film on the wet contacts (viscosity, pressure_viscosity) that are free in place of
     /// K and A: the first at each speed, all over both curves together; no oils are compared
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "oils")]
     pub film: Vec<String>,
     /// Systematic errors that both curves share, as nuisance parameters: delay=0.2us, reflected_delay,
     /// skew (of the wall's channel), speed_scale=1%, radius_error=1um, or any number that can be free

@@ -12,7 +12,7 @@ mod verdict;
 pub use self::{
     oils::{Oil, known_oils, oils},
     rows::{Branch, Combination, Contact, Pair, WetRow, is_determined},
-    verdict::{Match, NEVER, NuisanceParameter, Verdict},
+    verdict::{LEAST_PROBABILITY, Match, NEVER, NuisanceParameter, Verdict},
 };
 
 use crate::curve::{CurveProblem, Model};
@@ -69,6 +69,9 @@ const PUSH: &str = "near_end.force";
 /// Numbers of a wet contact, the last of the wet model's, where no film's are free.
 const CONTACT: [&str; 2] = ["wet.K", "wet.A"];
 
+/// Ends of the paths of a film's numbers.
+const FILM: [&str; 2] = ["film_entrained.viscosity", "film_entrained.pressure_viscosity"];
+
 impl Gauge {
     /// Fits the dry curve.
     ///
@@ -93,10 +96,8 @@ impl Gauge {
                 chains.wet.name()
             ));
         };
+        check_film(chains.wet, chains.film)?;
         let film: Vec<&str> = chains.film.iter().map(String::as_str).collect();
-        if film.len() > CONTACT.len() {
-            return InferError::input("a film has two numbers: viscosity and pressure_viscosity");
-        }
         let dry_model = model(chains.dry, &[])?;
         let parameters = dry_model.numbers.parameters(&dry.speeds_m_s());
         let dry = CurveProblem::new(dry_model, dry, parameters)?;
@@ -109,10 +110,6 @@ impl Gauge {
             Ok(dry.or_else(wet)?.parameters(&[]).first().map_or(f64::NAN, |p| p.start))
         };
         let wet_model = model(chains.wet, if film.is_empty() { &CONTACT } else { &film })?;
-        let constant = |number: &FreeNumber| number.form == Form::Constant;
-        if !wet_model.numbers.iter().rev().take(film.len()).all(constant) {
-            return InferError::input("a film's numbers do not depend on speed: name them alone");
-        }
         let start = |at: usize| {
             let number = wet_model.numbers.iter().rev().nth(film.len().checked_sub(at + 1)?)?;
             number.parameters(&[]).first().map(|p| p.start)
@@ -179,7 +176,7 @@ impl Gauge {
     /// known oil whose load is taken from the file, or compared by its reflected times too.
     pub fn doubts(&self, verdict: &Verdict) -> Option<String> {
         let chi_square = self.dry_goodness().chi_square;
-        let rejected = chi_square.filter(|found| found.probability < verdict::LEAST_PROBABILITY);
+        let rejected = chi_square.filter(|found| found.probability < LEAST_PROBABILITY);
         let dry = rejected.map(|found| {
             format!(
                 "The dry curve does not follow its model (p = {:.1e}): check that --dry names the curve of the dry \
@@ -204,6 +201,36 @@ impl Gauge {
         });
         dry.into_iter().chain(loads).reduce(|doubts, more| format!("{doubts} {more}"))
     }
+}
+
+/// Rejects names that are not those of numbers of a film on the wet contacts.
+fn check_film(wet: &Experiment, names: &[String]) -> Result<(), InferError> {
+    if names.is_empty() {
+        return Ok(());
+    }
+    if names.len() > CONTACT.len() {
+        return InferError::input("a film has two numbers: viscosity and pressure_viscosity");
+    }
+    let mut laws = wet.sections().iter().filter(|section| section.wet).flat_map(|of| &of.laws);
+    if !laws.any(|law| law.name() == "film_entrained") {
+        return InferError::input(format!(
+            "{} has no film: add film_entrained to its wet contacts, or use --preset pump-film",
+            wet.name()
+        ));
+    }
+    for name in names {
+        let number = FreeNumber::find(wet, name, None)?;
+        let path = number.path().unwrap_or_default();
+        if !FILM.iter().any(|end| path.ends_with(end)) {
+            return InferError::input(format!(
+                "{name} is no number of a film: expected viscosity or pressure_viscosity"
+            ));
+        }
+        if number.form != Form::Constant {
+            return InferError::input("a film's numbers do not depend on speed: name them alone");
+        }
+    }
+    Ok(())
 }
 
 /// Reduced radius in m of the wet contact whose K is fitted; `None` without any.

@@ -36,8 +36,8 @@ pub struct NuisanceParameter {
     pub standard_error: f64,
 }
 
-/// Below this probability an oil is rejected.
-pub(super) const LEAST_PROBABILITY: f64 = 0.01;
+/// Below this probability an oil or a film is rejected.
+pub const LEAST_PROBABILITY: f64 = 0.01;
 
 /// Probabilities below are not reported to their digits: no error is so exactly normal.
 pub const NEVER: f64 = 1e-9;
@@ -113,11 +113,12 @@ impl Gauge {
     }
 
     /// The film's numbers over both curves together, with the dry contacts' and the nuisance
-    /// parameters.
+    /// parameters, and chi-square of the wet data: by how much the wet curve raises that of the dry
+    /// one. `None` where no degree of freedom is left.
     ///
     /// # Errors
     /// What is in the way of the fit.
-    pub fn film(&self) -> Result<(CurveProblem, Fit), InferError> {
+    pub fn film(&self) -> Result<(CurveProblem, Fit, Option<ChiSquare>), InferError> {
         let speeds = self.data.speeds_m_s();
         let numbers = &self.wet.numbers;
         let film = numbers[numbers.len() - self.film..].iter();
@@ -126,7 +127,12 @@ impl Gauge {
         let problem =
             self.joint(MeasuredCurve::new(self.wet.clone(), self.data.clone()), more, &[]);
         let fit = fit(&problem, &Fitting::default())?;
-        Ok((problem, fit))
+        // The dry numbers cost no degree of freedom of the wet data: the dry curve has paid for them.
+        let determined = fit.rank.saturating_sub(self.dry_fit.rank);
+        let freedom = (fit.residuals.len() - self.dry_fit.residuals.len()).checked_sub(determined);
+        let rise = self.rise(&problem, &fit);
+        let chi_square = freedom.and_then(|freedom| ChiSquare::of(rise, freedom));
+        Ok((problem, fit, chi_square))
     }
 
     /// Both curves: the wet one with the numbers that both share, then its own, `more`, then fixed ones.
@@ -143,6 +149,11 @@ impl Gauge {
         let supplies = of_wet.map(Supply::Free).chain(fixed.iter().copied().map(Supply::Fixed));
         let wet = wet.supplied(supplies.collect());
         CurveProblem::unchecked(parameters, vec![self.dry.curves[0].clone(), wet])
+    }
+
+    /// By how much chi-square of both curves together exceeds that of the dry one alone.
+    fn rise(&self, joint: &CurveProblem, fit: &Fit) -> f64 {
+        (whole_chi_square(joint, fit) - whole_chi_square(&self.dry, &self.dry_fit)).max(0.0)
     }
 
     fn compare(&self, oil: &Oil, wet: &MeasuredCurve) -> Result<Match, InferError> {
@@ -175,11 +186,7 @@ impl Gauge {
         let chi_square = match joint.parameters().iter().any(|p| p.prior != Prior::Flat) {
             false => chi_square_of(residuals.iter().copied(), own.len()),
             // What the wet curve makes worse: a shared error must not be pulled for nothing.
-            true => {
-                let rise = whole_chi_square(&joint, &fit_result)
-                    - whole_chi_square(&self.dry, &self.dry_fit);
-                ChiSquare::of(rise.max(0.0), residuals.len() - own.len())
-            }
+            true => ChiSquare::of(self.rise(&joint, &fit_result), residuals.len() - own.len()),
         };
         let Some(chi_square) = chi_square else {
             return InferError::input("its distance is not finite");

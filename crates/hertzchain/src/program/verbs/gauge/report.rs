@@ -6,7 +6,10 @@ use crate::program::{
     chi_square_text, digits, estimate, format, heading, lines, misfit, percent, with_error,
 };
 use hertzchain_infer::gauge::{Contact, NEVER, Pair, WetRow, is_determined};
-use hertzchain_infer::{Covariance, CurveProblem, Fit, Goodness, Identifiability, Problem, titled};
+use hertzchain_infer::{
+    Covariance, CurveProblem, Fit, Identifiability, Parameter, Problem, titled,
+};
+use hertzchain_measure::signal::ChiSquare;
 
 pub(super) fn text(run_gauge: &GaugeResult) -> String {
     let doubts = doubts(run_gauge);
@@ -24,9 +27,21 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
         contacts(run_gauge),
         lines(references(wet_model))
     );
-    if let Some(film) = &run_gauge.film {
-        return text + &format!("\n{}\n{}{}\n", heading("Film"), whole(film), run_gauge.sentence());
+    text += &match &run_gauge.film {
+        Some(film) => format!("\n{}\n{}", heading("Film"), whole(film)),
+        None => oils(run_gauge),
+    };
+    text += &format!("{}\n", run_gauge.sentence());
+    // Tables may be longer than a screen: who sees the verdict alone is reported, too.
+    match doubts.is_empty() {
+        true => text,
+        false => text + "warning: see the first lines.\n",
     }
+}
+
+/// What K and A rest on, and the known oils.
+fn oils(run_gauge: &GaugeResult) -> String {
+    let mut text = String::new();
     if let Some(add) = run_gauge.gauge.to_add() {
         text += &format!(
             "One number a speed determines one combination of K and A. To determine both, {add}.\n"
@@ -39,12 +54,7 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
     for (oil, why) in &run_gauge.verdict.failed {
         text += &format!("{oil} can't be computed: {why}\n");
     }
-    text += &format!("{}\n", run_gauge.verdict.sentence());
-    // Tables may be longer than a screen: who sees the verdict alone is reported, too.
-    match doubts.is_empty() {
-        true => text,
-        false => text + "warning: see the first lines.\n",
-    }
+    text
 }
 
 /// Before all else: what speaks against believing what is below.
@@ -72,7 +82,7 @@ fn dry(run_gauge: &GaugeResult) -> String {
 }
 
 /// All numbers of both curves, and what they leave open.
-fn whole((problem, fit): &(CurveProblem, Fit)) -> String {
+fn whole((problem, fit, found): &(CurveProblem, Fit, Option<ChiSquare>)) -> String {
     let sd = Covariance::new(problem.parameters(), fit).sd;
     let values = problem.parameters().iter().zip(fit.point.iter().zip(&sd));
     let rows = values.map(|(of, (value, sd))| (of.name.clone(), estimate(of, *value, *sd)));
@@ -80,7 +90,7 @@ fn whole((problem, fit): &(CurveProblem, Fit)) -> String {
     let identified = Identifiability::new(problem.parameters(), fit, label);
     let open =
         identified.unidentifiable.into_iter().map(|one| format!("not determined: {}", one.words));
-    let chi_square = Goodness::new(problem, fit).chi_square.map(chi_square_text);
+    let chi_square = found.map(|of| format!("wet curve: {}", chi_square_text(of)));
     format::pairs(rows) + &lines(open.chain(chi_square))
 }
 
@@ -123,15 +133,26 @@ fn pairs(contact: &Contact) -> Vec<[String; 3]> {
     all.into_iter().zip(words).map(|(pair, words)| line(pair, words)).collect()
 }
 
+/// A film's number with its error, under its unit.
+fn of_film(number: &Parameter, value: f64, sd: f64) -> String {
+    match is_determined(value, sd) {
+        true => estimate(&Parameter { unit: String::new(), ..number.clone() }, value, sd),
+        false => "not determined".to_owned(),
+    }
+}
+
 fn contacts(run_gauge: &GaugeResult) -> String {
+    let film = run_gauge.gauge.film_number();
     let lines = |row: &WetRow| -> Vec<Vec<String>> {
         let speed = digits(row.speed_m_s, 4);
         let lines = match &row.contact {
-            Ok(contact) if run_gauge.film.is_some() => {
-                let [(value, sd), _] = contact.first.estimates();
-                vec![[reported(value, sd), String::new(), String::new()]]
-            }
-            Ok(contact) => pairs(contact),
+            Ok(contact) => match &film {
+                None => pairs(contact),
+                Some(film) => {
+                    let [(value, sd), _] = contact.first.estimates();
+                    vec![[of_film(film, value, sd), String::new(), String::new()]]
+                }
+            },
             Err(why) => vec![["–".to_owned(), "–".to_owned(), why.clone()]],
         };
         let speeds = std::iter::once(speed).chain(std::iter::repeat(String::new()));
@@ -139,7 +160,7 @@ fn contacts(run_gauge: &GaugeResult) -> String {
         whole.map(|(speed, line)| std::iter::once(speed).chain(line).collect()).collect()
     };
     let rows: Vec<Vec<String>> = run_gauge.rows.iter().flat_map(lines).collect();
-    let film = run_gauge.gauge.film_number().map(|of| titled(&of.name, &of.unit));
+    let film = film.map(|of| titled(&of.name, &of.unit));
     let first = film.as_deref().unwrap_or("K (GN/m^1.5)");
     let second = if film.is_some() { "" } else { "A (ns)" };
     let head = ["v (m/s)", first, second, ""];
