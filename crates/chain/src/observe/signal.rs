@@ -415,8 +415,9 @@ fn first_change(piece: &Piece<'_>, sensor: Sensor, floor: f64) -> Option<f64> {
 fn last_rise(piece: &Piece<'_>, sensor: Sensor, floor: f64) -> Option<f64> {
     let end = piece.signal(sensor, 1.0);
     let rise = |halvings: i32| end - piece.signal(sensor, 1.0 - 0.5_f64.powi(halvings));
-    let rises = (0..SHARPEST).map(|halvings| (rise(halvings), rise(halvings + 1)));
-    rises.filter(|(far, near)| near > far && *near > floor).map(|(_, near)| near).next()
+    let rises: Vec<f64> = (0..SHARPEST).map(rise).collect();
+    let dip = rises.windows(2).find(|pair| pair[1] > pair[0].max(floor));
+    dip.map(|pair| pair[1])
 }
 
 /// Halvings of a step in which a maximum behind an infinite slope is looked for.

@@ -309,7 +309,7 @@ impl<'a> Wave<'a> {
         let last = self.table.stages() - 1;
         self.a.swap(0, last);
         self.remember_largest();
-        let behaves = self.accept_states();
+        let states_changed = self.accept_states();
         let changed = match self.control {
             Control::Adaptive { .. } => self.settle_gates(),
             Control::Fixed { .. } => self.follow_gates(),
@@ -326,7 +326,7 @@ impl<'a> Wave<'a> {
         self.wake(awake);
         let begun =
             !self.slow.active && self.slow.is_due(self.window.bodies.len()) && self.begin_slow();
-        if changed || behaves || finished || begun {
+        if changed || states_changed || finished || begun {
             self.first_accelerations();
         }
     }
@@ -362,7 +362,7 @@ impl<'a> Wave<'a> {
         }
     }
 
-    /// Whether any contact's state behaves otherwise from here.
+    /// Whether the force or the rates of any contact's state jump here.
     fn accept_states(&mut self) -> bool {
         let mut changed = false;
         if self.system.has_states {

@@ -28,7 +28,7 @@ pub(super) fn text(run_gauge: &GaugeResult) -> String {
         lines(references(wet_model))
     );
     text += &match &run_gauge.film {
-        Some(film) => format!("\n{}\n{}", heading("Film"), whole(film)),
+        Some(film) => format!("\n{}\n{}", heading("Film"), joint_numbers(film)),
         None => oils(run_gauge),
     };
     text += &format!("{}\n", run_gauge.sentence());
@@ -82,7 +82,7 @@ fn dry(run_gauge: &GaugeResult) -> String {
 }
 
 /// All numbers of both curves, and what they leave open.
-fn whole((problem, fit, found): &(CurveProblem, Fit, Option<ChiSquare>)) -> String {
+fn joint_numbers((problem, fit, found): &(CurveProblem, Fit, Option<ChiSquare>)) -> String {
     let sd = Covariance::new(problem.parameters(), fit).sd;
     let values = problem.parameters().iter().zip(fit.point.iter().zip(&sd));
     let rows = values.map(|(of, (value, sd))| (of.name.clone(), estimate(of, *value, *sd)));
