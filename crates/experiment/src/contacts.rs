@@ -253,9 +253,16 @@ fn value_of(
     units: Units,
     value: &Node,
 ) -> Result<f64, FileProblem> {
+    let unit = unit_of(parameter, row, node, units);
+    let expected =
+        ExpectedQuantity { name: parameter.name, unit: &unit, limits: limits_of(parameter), units };
+    expected.read(value).map(|si| si.value)
+}
+
+/// What is accepted of a parameter.
+pub(crate) fn limits_of(parameter: &Parameter) -> ValueLimits {
     /// Largest exponent: steeper is a wall that no step can follow.
     const STEEPEST: f64 = 100.0;
-    let unit = unit_of(parameter, row, node, units);
     let is_exponent = parameter.name == "exponent";
     let words = match parameter.least {
         0.0 => "0 or more",
@@ -264,13 +271,7 @@ fn value_of(
         _ => "above the law's least value",
     };
     let most = if is_exponent { STEEPEST } else { f64::MAX };
-    let expected = ExpectedQuantity {
-        name: parameter.name,
-        unit: &unit,
-        limits: ValueLimits::closed(parameter.least, most, words),
-        units,
-    };
-    expected.read(value).map(|si| si.value)
+    ValueLimits::closed(parameter.least, most, words)
 }
 
 /// A parameter's unit with `{other}` replaced by the other's value.

@@ -1,7 +1,7 @@
 //! JSON Schema of the experiment file, from the declared keys and the
 //! registry of contact laws, for editors.
 
-use crate::contacts::{CONTACT, is_derived};
+use crate::contacts::{CONTACT, is_derived, limits_of};
 use crate::keys::{Fields, Key, KeyKind, Need, ROOT, ValueLimits, Variants};
 use crate::units;
 use crate::values::Units;
@@ -166,9 +166,8 @@ fn law_table(row: &Row, units: Units) -> Value {
             "1" => parameter.meaning.to_owned(),
             unit => format!("{}, in {unit}", parameter.meaning),
         };
-        let schema = json!({
-            "type": types(parameter.unit, units), "pattern": QUANTITY, "description": about,
-        });
+        let mut schema = quantity(parameter.unit, &limits_of(parameter), units);
+        schema["description"] = json!(about);
         properties.insert(parameter.name.to_owned(), schema);
     }
     if row.info.parameters.iter().any(is_derived) {

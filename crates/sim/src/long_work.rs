@@ -3,7 +3,7 @@
 
 use crate::duration::{self, End};
 use crate::plan::Plan;
-use crate::stop::{count_steps, note_progress, stopped};
+use crate::stop::{count_steps, note_shot, stopped};
 use hertzchain_chain::System;
 use hertzchain_chain::wave::{Flow, Observer, Piece};
 use hertzchain_experiment::Method;
@@ -76,7 +76,7 @@ fn rough(time_s: f64) -> String {
 pub(crate) struct CountedShots {
     steps: u64,
     most_steps: f64,
-    expected: f64,
+    expected: Expected,
     begun: Instant,
 }
 
@@ -91,7 +91,7 @@ impl CountedShots {
         Self {
             steps: 0,
             most_steps: end.most_steps,
-            expected: Expected::of_system(plan, system).steps,
+            expected: Expected::of_system(plan, system),
             begun: Instant::now(),
         }
     }
@@ -101,15 +101,22 @@ impl CountedShots {
     }
 
     fn note(&self, time_s: f64) -> String {
-        let share = (self.steps as f64 / self.expected).min(0.99);
-        let left_s = self.begun.elapsed().as_secs_f64() * (1.0 / share - 1.0);
-        format!(
-            "{} steps, t = {time_s:.3e} s: about {:.0} % of this run, {} left",
-            self.steps,
-            100.0 * share,
-            rough(left_s)
-        )
+        progress((self.steps, self.begun.elapsed().as_secs_f64()), time_s, self.expected)
     }
+}
+
+/// How far a run of so many steps and seconds is. The later steps of a shot are the dearer ones, so that the time
+/// left is that of the whole estimate at least.
+fn progress((steps, elapsed_s): (u64, f64), time_s: f64, expected: Expected) -> String {
+    let share = steps as f64 / expected.steps;
+    let how_far = match share < 1.0 {
+        true => {
+            let left_s = (elapsed_s * (1.0 / share - 1.0)).max((1.0 - share) * expected.time_s);
+            format!("about {:.0} % of this run, {} left", 100.0 * share, rough(left_s))
+        }
+        false => format!("more than the {:.1e} that were expected", expected.steps),
+    };
+    format!("{steps} steps, t = {time_s:.3e} s: {how_far}")
 }
 
 impl Observer for CountedShots {
@@ -119,7 +126,7 @@ impl Observer for CountedShots {
             count_steps(COUNTED);
         }
         if self.steps.is_multiple_of(NOTED) {
-            note_progress(&self.note(piece.time_s(1.0)));
+            note_shot(&self.note(piece.time_s(1.0)));
         }
         match stopped() || self.is_long() {
             true => Flow::Finished,

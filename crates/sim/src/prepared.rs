@@ -396,6 +396,7 @@ impl<'a> PreparedShot<'a> {
         let limits = Limits {
             budget: self.plan.budget,
             slow_tolerance: Some(slow_tolerance),
+            careful_closings: !accuracy::is_gentle(self.plan),
             ..Limits::until(self.end.longest_s)
         };
         let outcome = run(&self.system, method, limits, &mut observers)?;

@@ -22,6 +22,8 @@ struct Shared {
     done: AtomicU64,
     steps: AtomicU64,
     note: Mutex<String>,
+    /// The note is of a single shot.
+    of_shot: AtomicBool,
     watch: Option<fn(&Stop)>,
 }
 
@@ -41,9 +43,17 @@ impl Stop {
         self.0.asked.load(Ordering::Relaxed)
     }
 
-    /// Counts so many more as done, from any thread.
+    /// Counts so many more as done, from any thread; what a single shot noted gives way to the count.
     pub fn count(&self, more: u64) {
         self.0.done.fetch_add(more, Ordering::Relaxed);
+        if self.0.of_shot.load(Ordering::Relaxed) {
+            self.set_note(String::new(), false);
+        }
+    }
+
+    fn set_note(&self, note: String, of_shot: bool) {
+        *self.0.note.lock().unwrap_or_else(PoisonError::into_inner) = note;
+        self.0.of_shot.store(of_shot, Ordering::Relaxed);
     }
 
     /// Steps of single shots so far, to some dozens.
@@ -99,8 +109,16 @@ pub fn count_done(more: usize) {
 
 /// Notes how far long work is on the calling thread's [`Stop`], if it has one.
 pub fn note_progress(note: &dyn std::fmt::Display) {
+    with_own(|stop| stop.set_note(note.to_string(), false));
+}
+
+/// The same of a single shot, where nothing is counted or noted of more than it.
+pub(crate) fn note_shot(note: &dyn std::fmt::Display) {
     with_own(|stop| {
-        *stop.0.note.lock().unwrap_or_else(PoisonError::into_inner) = note.to_string();
+        let alone = stop.0.of_shot.load(Ordering::Relaxed) || stop.note().is_empty();
+        if stop.done() == 0 && alone {
+            stop.set_note(note.to_string(), true);
+        }
     });
 }
 

@@ -89,7 +89,7 @@ pub enum SolveError {
     /// More force passes than allowed.
     #[error(
         "gave up at t = {} after {force_passes} force passes: the last step was {}, set by contact \
-         {contact}; ask for a shorter duration or less accuracy, or look at that contact's laws",
+         {contact}; ask for a shorter duration, a longer step or less accuracy, or look at that contact's laws",
         time(*time_s),
         time(*step_s)
     )]
@@ -226,6 +226,9 @@ pub struct Limits {
     /// pulse in a long chain, if larger than the method's: a pulse repeats its
     /// error in every bead that it passes, the others do not.
     pub slow_tolerance: Option<f64>,
+    /// Hold the first step after a contact has closed to the error that a force has which begins as √t: for
+    /// laws, gaps and cut forces with which such steps decide on the error of a shot.
+    pub careful_closings: bool,
     /// Most force passes; when `None`, far more than any sensible shot of this
     /// duration needs.
     pub force_passes: Option<u64>,
@@ -239,6 +242,7 @@ impl Limits {
             budget: false,
             whole_chain: false,
             slow_tolerance: None,
+            careful_closings: false,
             force_passes: None,
         }
     }

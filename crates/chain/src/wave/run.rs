@@ -221,7 +221,8 @@ impl<'a> Wave<'a> {
             self.stages(h);
             let (error, body) = self.error(h);
             self.worst = body;
-            let error = self.watch.onset * error / tolerance;
+            let onset = if self.limits.careful_closings { self.watch.onset } else { 1.0 };
+            let error = onset * error / tolerance;
             if error > 1.0 || error.is_nan() {
                 let shrink = if error.is_finite() {
                     0.9 * error.powf(-self.table.order.recip())

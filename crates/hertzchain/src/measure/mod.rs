@@ -25,6 +25,7 @@ use hertzchain_measure::{
 };
 use std::f64::consts::TAU;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Order of one run of the low-pass.
@@ -40,14 +41,18 @@ const FIT_WIDTHS: f64 = 2.0;
 /// the table of shots may lie among them.
 ///
 /// # Errors
-/// A folder without recordings.
+/// A folder without recordings; a pipe that can't be read.
 pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Vec<Note>), Failure> {
     let (mut files, mut notes) = (Vec::new(), Vec::new());
     let list = list.and_then(|list| list.canonicalize().ok());
     let is_list = |file: &PathBuf| list.is_some() && file.canonicalize().ok() == list;
     for path in given {
         if !path.is_dir() {
-            files.push(seekable(path).map_err(unread(path))?);
+            // One that is not there is refused as a record, beside the others.
+            files.push(match seekable(path) {
+                Err(error) if error.kind() == ErrorKind::NotFound => path.clone(),
+                found => found.map_err(unread(path))?,
+            });
             continue;
         }
         let (found, mut others) = inside(path)?;

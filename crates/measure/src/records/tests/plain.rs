@@ -14,6 +14,7 @@ fn words_that_begin_as_formulas_are_words_and_numbers_stay_numbers() {
     for formula in ["=1+1", "+cmd|' /C calc'!A0", "-2+3", "@SUM(A1)", "\t=1"] {
         assert_eq!(no_formula(formula), format!("'{formula}"));
     }
+    assert_eq!(no_formula("=\u{1b}[2J"), "'=\\u001b[2J");
     for other in ["-1.5e-7", "+3", "dry", "a-b", "", "-inf"] {
         assert_eq!(no_formula(other), other);
     }

@@ -3,7 +3,7 @@
 use super::pictures;
 use crate::program::Failure;
 use hertzchain_figures::Figure;
-use hertzchain_measure::records::write_whole;
+use hertzchain_measure::records::{without_controls, write_whole};
 use hertzchain_measure::{Example, Measurement, Shot};
 use std::path::Path;
 
@@ -50,7 +50,7 @@ fn section(example: &Example) -> String {
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    without_controls(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// A picture as a part of an address.
