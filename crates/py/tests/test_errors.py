@@ -75,3 +75,11 @@ def test_what_makes_no_sense_is_refused_in_words(small, call, words):
     with pytest.raises(hc.HertzchainError, match=words):
         call(small)
     assert issubclass(hc.OptionError, ValueError)
+
+
+def test_control_characters_of_names_and_titles_are_written_out():
+    steering = "\x1b[31mred\x07\x9b"
+    described = hc.check(hc.build(SMALL | {"title": steering}))
+    missing = str(hc.MissingFileError(steering))
+    for text in (repr(described), missing):
+        assert "\\u001b[31mred\\u0007\\u009b" in text and not {"\x1b", "\x07", "\x9b"} & set(text)
