@@ -11,8 +11,10 @@ use std::fmt;
 use std::time::Instant;
 
 /// Steps of the adaptive solver a bead of a shot that ends by itself, at an accuracy of
-/// 1e-6: 73 to 78 in dry rows of 40 to 4,000 beads. They go as the accuracy to −1/5.
+/// 1e-6: 73 to 78 in dry rows of 40 to 4,000 beads. They go as the accuracy to −1/5, and in longer
+/// rows as the number of beads to 1/5.
 const STEPS_A_BEAD: f64 = 75.0;
+const LONG: f64 = 1000.0;
 
 /// A shot that ends by itself goes on until three times the pulse's way to the wall.
 const WAYS: f64 = 3.0;
@@ -20,6 +22,10 @@ const WAYS: f64 = 3.0;
 /// Bodies that a step computes, over those of the row, and the time of one, in s, with
 /// the runs that estimate the error: dry rows of 1,000 to 4,000 beads.
 const SHARE_OF_BODIES: f64 = 0.3;
+/// Bodies of a pulse that leaves nothing behind on its way to the wall.
+const PULSE_BODIES: f64 = 40.0;
+/// Time to the wall over its estimate, at most.
+const MARGIN: f64 = 1.1;
 const BODY_STEP_S: f64 = 1e-7;
 
 /// Expected work of a shot.
@@ -48,14 +54,27 @@ impl Expected {
         let steps = match (plan.method, plan.step_s) {
             (Method::Rk4 | Method::Verlet, Some(step_s)) => duration_s / step_s,
             _ => {
-                let steps = STEPS_A_BEAD * bodies * (plan.accuracy / 1e-6).powf(-0.2);
-                steps * duration_s / (WAYS * crossing_s)
+                let scale = (plan.accuracy / 1e-6 / (bodies / LONG).max(1.0)).powf(-0.2);
+                STEPS_A_BEAD * bodies * scale * duration_s / (WAYS * crossing_s)
             }
         };
         let steps = steps.min(duration::end(plan, system).most_steps);
-        let time_s = BODY_STEP_S * steps * (SHARE_OF_BODIES * bodies).max(1.0);
+        let awake = awake(plan, system, crossing_s / duration_s);
+        let time_s = BODY_STEP_S * steps * awake;
         Self { steps, time_s }
     }
+}
+
+/// Bodies that a step computes, on average over a shot, of which a pulse takes this part to reach the wall.
+fn awake(plan: &Plan, system: &System, on_its_way: f64) -> f64 {
+    let bodies = system.bodies() as f64;
+    let mut laws = plan.chain.sections.iter().flat_map(|section| &section.laws);
+    let alone = plan.step_s.is_none()
+        && system.flies_free()
+        && laws.all(|law| law.info().name.starts_with("elastic"));
+    let on_its_way = if alone { (MARGIN * on_its_way).min(1.0) } else { 0.0 };
+    let left_behind = (SHARE_OF_BODIES * bodies).max(1.0);
+    on_its_way * PULSE_BODIES.min(bodies) + (1.0 - on_its_way) * left_behind
 }
 
 impl fmt::Display for Expected {
