@@ -320,10 +320,12 @@ impl Signal {
                 inside.push(maximum);
             }
         }
-        let on_a_rise = start_slope > 0.0 && end_slope > 0.0 && inside.is_empty();
-        let sharp_falls = if on_a_rise { piece.sharp_falls(self.sensor) } else { [None; 3] };
-        for at in sharp_falls.into_iter().flatten() {
-            if let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, (at, 0.0), floor) {
+        for at in piece.sharp_falls(self.sensor).into_iter().flatten() {
+            if let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, (at, 0.0), floor)
+                && !inside.iter().any(|other| {
+                    other.time_s <= piece.time_s(at) && other.value >= maximum.value - floor
+                })
+            {
                 self.keep(maximum);
                 self.lowest = self.lowest.min(dip);
             }
