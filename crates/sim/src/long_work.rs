@@ -11,10 +11,8 @@ use std::fmt;
 use std::time::Instant;
 
 /// Steps of the adaptive solver a bead of a shot that ends by itself, at an accuracy of
-/// 1e-6: 73 to 78 in dry rows of 40 to 4,000 beads. They go as the accuracy to −1/5, and in longer
-/// rows as the number of beads to 1/5.
+/// 1e-6: 73 to 78 in dry rows of 40 to 4,000 beads. They go as the accuracy to −1/5.
 const STEPS_A_BEAD: f64 = 75.0;
-const LONG: f64 = 1000.0;
 
 /// A shot that ends by itself goes on until three times the pulse's way to the wall.
 const WAYS: f64 = 3.0;
@@ -54,7 +52,7 @@ impl Expected {
         let steps = match (plan.method, plan.step_s) {
             (Method::Rk4 | Method::Verlet, Some(step_s)) => duration_s / step_s,
             _ => {
-                let scale = (plan.accuracy / 1e-6 / (bodies / LONG).max(1.0)).powf(-0.2);
+                let scale = (plan.accuracy / 1e-6).powf(-0.2);
                 STEPS_A_BEAD * bodies * scale * duration_s / (WAYS * crossing_s)
             }
         };
