@@ -20,11 +20,13 @@ const WAYS: f64 = 3.0;
 /// Bodies that a step computes, over those of the row, and the time of one, in s, with
 /// the runs that estimate the error: dry rows of 1,000 to 4,000 beads.
 const SHARE_OF_BODIES: f64 = 0.3;
-/// Bodies of a pulse that leaves nothing behind on its way to the wall.
-const PULSE_BODIES: f64 = 40.0;
-/// Time to the wall over its estimate, at most.
-const MARGIN: f64 = 1.1;
 const BODY_STEP_S: f64 = 1e-7;
+
+/// Bodies that a step computes while a pulse without losses runs to the wall: behind it all are asleep.
+const PULSE_BODIES: f64 = 40.0;
+
+/// Time of a pulse to the wall over `crossing_s`, at most.
+const MARGIN: f64 = 1.1;
 
 /// Expected work of a shot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,14 +65,15 @@ impl Expected {
     }
 }
 
-/// Bodies that a step computes, on average over a shot, of which a pulse takes this part to reach the wall.
-fn awake(plan: &Plan, system: &System, on_its_way: f64) -> f64 {
+/// Bodies that a step computes, on average over a shot; `crossing` is the part of its duration that the pulse
+/// takes to the wall.
+fn awake(plan: &Plan, system: &System, crossing: f64) -> f64 {
     let bodies = system.bodies() as f64;
     let mut laws = plan.chain.sections.iter().flat_map(|section| &section.laws);
     let alone = plan.step_s.is_none()
         && system.flies_free()
         && laws.all(|law| law.info().name.starts_with("elastic"));
-    let on_its_way = if alone { (MARGIN * on_its_way).min(1.0) } else { 0.0 };
+    let on_its_way = if alone { (MARGIN * crossing).min(1.0) } else { 0.0 };
     let left_behind = (SHARE_OF_BODIES * bodies).max(1.0);
     on_its_way * PULSE_BODIES.min(bodies) + (1.0 - on_its_way) * left_behind
 }
@@ -122,8 +125,8 @@ impl CountedShots {
     }
 }
 
-/// How far a run of so many steps and seconds is. The later steps of a shot are the dearer ones, so that the time
-/// left is that of the whole estimate at least.
+/// How far a run of so many steps and seconds is. The time left is at least its share of the estimate: later steps
+/// take longer, as more bodies move.
 fn progress((steps, elapsed_s): (u64, f64), time_s: f64, expected: Expected) -> String {
     let share = steps as f64 / expected.steps;
     let how_far = match share < 1.0 {

@@ -226,8 +226,8 @@ pub struct Limits {
     /// pulse in a long chain, if larger than the method's: a pulse repeats its
     /// error in every bead that it passes, the others do not.
     pub slow_tolerance: Option<f64>,
-    /// Hold the first step after a contact has closed to the error that a force has which begins as √t: for
-    /// laws, gaps and cut forces with which such steps decide on the error of a shot.
+    /// Keep the first step after a contact has closed below the tolerance also where its force begins as √t,
+    /// which the method's error estimate does not see: for chains with such damping laws, gaps or cut forces.
     pub careful_closings: bool,
     /// Most force passes; when `None`, far more than any sensible shot of this
     /// duration needs.

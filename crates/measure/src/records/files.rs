@@ -329,3 +329,7 @@ pub fn no_formula(words: &str) -> Cow<'_, str> {
         false => words,
     }
 }
+
+#[cfg(test)]
+#[path = "tests/plain.rs"]
+mod tests;
