@@ -297,8 +297,11 @@ impl Signal {
         let [start, .., end] = stretch.values;
         let floor = JUMP.max(OF_CUT * piece.cut_tolerance()) * self.largest;
         let sharp_rises = piece.sharp_rises(self.sensor);
-        if sharp_rises.contains(&Some(0.0)) {
-            start_slope = first_change(piece, self.sensor, floor).unwrap_or(start_slope);
+        let mut first_value = start;
+        if sharp_rises.contains(&Some(0.0))
+            && let Some(change) = first_change(piece, self.sensor, floor)
+        {
+            (start_slope, first_value) = (change, start + change);
         }
         if end_slope <= 0.0 && piece.parts_at_end(self.sensor) {
             end_slope = last_rise(piece, self.sensor, floor).unwrap_or(end_slope);
@@ -310,6 +313,8 @@ impl Signal {
         if rises && falls {
             self.keep(Maximum { time_s, value: value.max(start) });
         }
+        // A fall behind a jump may end before the first sample.
+        self.lowest = self.lowest.min(first_value);
         let mut inside = interior_maxima(piece, self.sensor, [start_slope, end_slope], stretch);
         for from in sharp_rises.into_iter().flatten().filter(|_| end_slope <= 0.0) {
             let start_s = piece.time_s(from);
