@@ -325,6 +325,14 @@ impl Signal {
                 inside.push(maximum);
             }
         }
+        if inside.is_empty()
+            && end_slope > 0.0
+            && let Some((maximum, dip)) = (sharp_rises.into_iter().flatten())
+                .find_map(|from| maximum_before_dip(piece, self.sensor, from, floor))
+        {
+            self.keep(maximum);
+            self.lowest = self.lowest.min(dip);
+        }
         for at in piece.sharp_falls(self.sensor).into_iter().flatten() {
             if let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, (at, 0.0), floor)
                 && !inside.iter().any(|other| {
@@ -446,6 +454,24 @@ fn sharp_maximum(
     let (near, far) = (at(highest + 1), at(highest - 1));
     let is_one = highest > 0 && most > dip + floor;
     is_one.then(|| (dip, highest_between(piece, sensor, near.min(far), near.max(far))))
+}
+
+/// The maximum behind an infinite slope from which a signal falls by more than a floor before it rises
+/// until the end of the step, and the least value that is seen behind it.
+fn maximum_before_dip(
+    piece: &Piece<'_>,
+    sensor: Sensor,
+    from: f64,
+    floor: f64,
+) -> Option<(Maximum, f64)> {
+    let at = |halvings: usize| from + (1.0 - from) * 0.5_f64.powi(halvings as i32);
+    let value = |halvings: usize| piece.signal(sensor, at(halvings));
+    let values: Vec<f64> = (0..SHARPEST as usize).map(value).collect();
+    let falls = (1..values.len() - 1).rev().find(|&i| values[i] > values[i - 1] + floor)?;
+    let highest = (falls..values.len() - 1).find(|&i| values[i] >= values[i + 1])?;
+    let dip = values[..highest].iter().copied().fold(f64::INFINITY, f64::min);
+    let maximum = highest_between(piece, sensor, at(highest + 1), at(highest - 1));
+    (maximum.value > piece.signal(sensor, from) + floor).then_some((maximum, dip))
 }
 
 /// A maximum by golden section: the rate of a narrow one is not known.
