@@ -47,9 +47,10 @@ impl Comparison {
     }
 }
 
-/// Errors in s of all three, of shots that have both times.
+/// Errors in s of all three, of shots that have both times and count.
 fn add_errors(all: &mut [[Vec<f64>; 3]; 2], row: &Row, records: &[&[f64]], shots: &[Shot]) {
-    let timed = records.iter().zip(shots).filter_map(|(record, shot)| {
+    let counted = records.iter().zip(shots).filter(|(_, shot)| !shot.is_dubious());
+    let timed = counted.filter_map(|(record, shot)| {
         let picks = shot.flight.as_ref().ok()?.picks;
         let times_s = [picks.incident.time_s, picks.wall.time_s, picks.reflected?.time_s];
         Some((*record, times_s.map(|time_s| time_s / shot.interval_s)))
