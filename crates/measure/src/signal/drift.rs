@@ -41,8 +41,14 @@ impl Detrended {
     ///
     /// Polynomials are fitted to the quiet stretch and to the second half of what lies between the
     /// first two pulses, where the first one's tail has gone by; with a step at one of these samples
-    /// where they follow no polynomial.
-    pub(super) fn new(samples: &[f64], pulses: &[Pulse], time: f64) -> Option<Self> {
+    /// where they follow no polynomial. What lies before and after is that of `without_hum`, if there is
+    /// such a record.
+    pub(super) fn new(
+        samples: &[f64],
+        without_hum: Option<&[f64]>,
+        pulses: &[Pulse],
+        time: f64,
+    ) -> Option<Self> {
         let (one, last) = (pulses.first()?, pulses.last()?);
         let margin = |pulse: &Pulse| (MARGIN * pulse.width_samples) as usize;
         let quiet_end = one.at.checked_sub(margin(one))?;
@@ -62,10 +68,15 @@ impl Detrended {
         let best = background.smooth().filter(|fit| background.holds(fit));
         let best = best.or_else(|| background.stepped().filter(|fit| background.holds(fit)))?;
         let level = best.solution.values[0];
-        let mut without = samples.to_vec();
-        for (at, sample) in without.iter_mut().enumerate().skip(first) {
-            *sample -= background.value(&best, at.min(end)) - level;
+        let own = |at: usize| samples[at] - (background.value(&best, at.min(end)) - level);
+        if let Some(calm) = without_hum {
+            let shift = level - calm[first..quiet_end].iter().sum::<f64>() / quiet.len() as f64;
+            let mut without: Vec<f64> = calm.iter().map(|sample| sample + shift).collect();
+            (first..=end).for_each(|at| without[at] = own(at));
+            return Some(Self { samples: without, first, half, fit: best });
         }
+        let mut without = samples.to_vec();
+        (first..samples.len()).for_each(|at| without[at] = own(at));
         // What lies before is quiet as well; each part has its own baseline.
         for part in without[..first].rchunks_mut(quiet_end - first) {
             let length = part.len() as f64;

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::error::{MeasureError, Result};
 use crate::signal::drift::Detrended;
 use crate::signal::find::conditioned_pulses;
+use crate::signal::hum;
 use crate::signal::pick::{PulseSamples, pick};
 use crate::signal::{
     Bandwidth, Channels, CompetingPick, Estimate, FindOptions, Found, LowPass, Method, Picked,
@@ -93,14 +94,14 @@ pub fn measure(
         .collect::<Result<_, _>>()?;
     let recorded: Vec<&[f64]> = repaired.iter().map(|(samples, _)| &samples[..]).collect();
     let recorded = channels_of(&recorded);
-    let mut found = conditioned_pulses(channels_of(&conditioned), recorded, find)?;
+    let (mut found, calm) = without_hum(&conditioned, interval_s, (recorded, find))?;
     let drifts: Vec<Option<Detrended>> =
-        (0..count).map(|of| drift(&found, &conditioned, of)).collect();
-    let has_drift = drifts.iter().any(Option::is_some);
+        (0..count).map(|of| drift(&found, &conditioned, calm[of].as_deref(), of)).collect();
+    let has_drift = drifts.iter().any(Option::is_some) || calm.iter().any(Option::is_some);
     if has_drift {
-        for (samples, drift) in conditioned.iter_mut().zip(&drifts) {
-            if let Some(drift) = drift {
-                *samples = Cow::Borrowed(&drift.samples);
+        for ((samples, drift), calm) in conditioned.iter_mut().zip(&drifts).zip(&calm) {
+            if let Some(without) = drift.as_ref().map(|drift| &drift.samples).or(calm.as_ref()) {
+                *samples = Cow::Borrowed(without);
             }
         }
         found = conditioned_pulses(channels_of(&conditioned), recorded, find)?;
@@ -140,14 +141,42 @@ fn channels_of<T: AsRef<[f64]>>(samples: &[T]) -> Channels<'_> {
     }
 }
 
+/// Pulses of a shot, and its channels less their hum, if that is high and wide enough to be taken for one.
+fn without_hum(
+    channels: &[Cow<'_, [f64]>],
+    interval_s: f64,
+    (recorded, find): (Channels<'_>, &FindOptions),
+) -> Result<(Found, Vec<Option<Vec<f64>>>)> {
+    let mut calm: Vec<_> = channels.iter().map(|one| hum::without_hum(one, interval_s)).collect();
+    if calm.iter().any(Option::is_some) {
+        let either: Vec<&[f64]> =
+            calm.iter().zip(channels).map(|(calm, own)| calm.as_deref().unwrap_or(own)).collect();
+        if let Ok(found) = conditioned_pulses(channels_of(&either), recorded, find) {
+            for (calm, own) in calm.iter_mut().zip(channels) {
+                *calm = calm.take().filter(|calm| hum::is_hum(&found, own, calm, interval_s));
+            }
+            if calm.iter().any(Option::is_some) {
+                return Ok((found, calm));
+            }
+        }
+    }
+    let found = conditioned_pulses(channels_of(channels), recorded, find)?;
+    Ok((found, vec![None; channels.len()]))
+}
+
 /// The slow baseline of a channel of a shot whose pulses were found, if it has one.
-fn drift(found: &Found, channels: &[Cow<'_, [f64]>], which: usize) -> Option<Detrended> {
+fn drift(
+    found: &Found,
+    channels: &[Cow<'_, [f64]>],
+    calm: Option<&[f64]>,
+    which: usize,
+) -> Option<Detrended> {
     let (incident, wall) = (found.incident?, found.wall?);
     let is_here =
         |pulse: &&Pulse| channels.len() == 1 || which == usize::from(pulse.kind == PulseKind::Wall);
     let pulses: Vec<Pulse> = found.pulses().filter(is_here).copied().collect();
     let time = wall.at.checked_sub(incident.at)?;
-    Detrended::new(&channels[which], &pulses, time as f64)
+    Detrended::new(&channels[which], calm, &pulses, time as f64)
 }
 
 fn with_drift(

@@ -1,7 +1,7 @@
 //! Hum, ramps and steps under a shot, and a wall sensor much more sensitive than the bead's.
 
 use crate::signal::{Channels, QualityFlag, SignalOptions, coverage, measure};
-use crate::tests::common::Scene;
+use crate::tests::common::{Scene, normal};
 use crate::tests::dry::Dry;
 use crate::tests::source::dry_shot;
 use rand::SeedableRng;
@@ -12,13 +12,22 @@ const INTERVAL_S: f64 = 1e-6;
 
 /// Pulls of incident and reflected times in 30 shots of 40 dB with this added to them.
 fn pulls(added: impl Fn(f64, f64) -> f64) -> [Vec<f64>; 2] {
+    pulls_amid([0, 0], added)
+}
+
+/// The same with so many samples of noise before and after each shot.
+fn pulls_amid(quiet: [usize; 2], added: impl Fn(f64, f64) -> f64) -> [Vec<f64>; 2] {
     let source = dry_shot();
     let [passing, wall, back] = Dry::MAXIMA_S;
     let true_s = [wall - passing, back - wall];
     let mut pulls = [Vec::new(), Vec::new()];
     for number in 0..30 {
         let mut rng = ChaCha8Rng::seed_from_u64(number);
-        let mut samples = source.recorded(INTERVAL_S, 0.01, &mut rng);
+        let shot = source.recorded(INTERVAL_S, 0.01, &mut rng);
+        let [mut samples, after] =
+            quiet.map(|count| (0..count).map(|_| 0.01 * normal(&mut rng)).collect::<Vec<f64>>());
+        samples.extend(shot);
+        samples.extend(after);
         for (at, sample) in samples.iter_mut().enumerate() {
             *sample += added(at as f64 * INTERVAL_S, number as f64 / 30.0);
         }
@@ -100,6 +109,26 @@ fn the_walls_sensor_may_be_two_and_a_half_times_as_sensitive() {
     let [forth, back] = [flight.incident_s, flight.reflected_s.unwrap()];
     assert!((forth.value - scene.incident_s()).abs() < 4.0 * forth.sigma, "{forth:?}");
     assert!((back.value - scene.reflected_s()).abs() < 4.0 * back.sigma, "{back:?}");
+}
+
+/// Hum before a long lead is as high as pulses, and much wider.
+#[test]
+fn hum_is_subtracted_in_records_much_longer_than_a_shot() {
+    let harmonics = |time_s: f64, phase: f64| {
+        let of = |share: f64, times: f64| hum(share)(times * time_s, (times * phase).fract());
+        of(0.2, 1.0) + of(0.1, 3.0) + of(0.06, 5.0)
+    };
+    let all = [
+        pulls_amid([4_000, 4_000], hum(0.05)),
+        pulls_amid([8_000, 9_000], harmonics),
+        pulls_amid([20_000, 27_000], harmonics),
+    ];
+    for (number, pulls) in all.iter().enumerate() {
+        for (which, pulls) in pulls.iter().enumerate() {
+            let scale = coverage(pulls, 1.96).unwrap().scale;
+            assert!((0.6..1.4).contains(&scale), "{number}, {which}: {scale}");
+        }
+    }
 }
 
 /// With losses the wall's pulse may be lower than the incident one, so that hum before that,
