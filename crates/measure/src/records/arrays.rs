@@ -3,7 +3,7 @@
 use crate::error::{MeasureError, Result, file_name};
 use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{
-    MOST_CHANNELS, MOST_COLUMNS, Parts, ReadOptions, Rows, ambiguous, chosen, numbered,
+    MOST_CHANNELS, MOST_COLUMNS, Parts, ReadOptions, Rows, ambiguous, chosen, list, numbered,
 };
 use crate::records::read::Raw;
 use crate::records::record::Record;
@@ -21,6 +21,13 @@ pub(crate) const RATES: &[&str] =
 const TIMES: &[&str] = &["t", "time", "times"];
 const TIMES_S: &[&str] = &["time_s", "t_s"];
 const SPEEDS: &[&str] = &["speed", "speeds", "speed_m_s", "speeds_m_s", "v0"];
+/// Words in names of groups that are channels, not shots; so are single letters from the first on,
+/// with or without a number.
+#[rustfmt::skip]
+const CHANNELS: &[&str] = &[
+    "adc", "ai", "bead", "ch", "chan", "channel", "channels", "input", "kanal", "probe", "sensor", "wall",
+];
+const LETTERS: &[&str] = &["a", "b", "c", "d"];
 /// Names, before a number, of arrays that are shots.
 const SHOTS: &[&str] = &["arr", "shot", "record", "rec", "run", "segment", "seg", "event", "trial"];
 
@@ -265,10 +272,12 @@ fn of_samples(
         let recordings = rows(&**arrays, one, options)?;
         return Ok((arrays.records(one, interval_s, options)?, recordings));
     }
-    if let Some(groups) = shot_groups(&samples) {
-        let recordings = groups.len();
+    // Channels by their whole paths are of no group.
+    let by_path = options.channels.iter().any(|channel| samples.contains(channel));
+    if let Some(groups) = shot_groups(&samples).filter(|_| !by_path) {
+        let (recordings, note) = (groups.len(), groups_assumed(&groups));
         let all = group_by_group(arrays.clone(), groups, interval_s, options.clone());
-        return Ok((all, recordings));
+        return Ok((with_note(all, note), recordings));
     }
     let are_shots = samples.iter().all(|name| is_shot(last(name)));
     if are_shots && options.rows != Rows::Channels && options.channels.is_empty() {
@@ -302,27 +311,62 @@ fn is_shot(name: &str) -> bool {
     number.is_some() && SHOTS.contains(&word.as_str())
 }
 
+fn is_channel(name: &str) -> bool {
+    let name = name.to_lowercase();
+    let mut words = name.split(|letter: char| !letter.is_alphabetic());
+    words.any(|word| CHANNELS.contains(&word)) || LETTERS.contains(&numbered_name(&name).0)
+}
+
 fn numbered_name(name: &str) -> (&str, Option<u64>) {
     let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     (stem, name[stem.len()..].parse().ok())
 }
 
-/// Arrays of each group, in the order of the groups' numbers, where every group is a shot: more
-/// than one, called so or only numbered, with arrays of the same names.
+/// Arrays of each group, in the order of the groups' names and numbers, where every group is a shot:
+/// more than one, with arrays of the same names, and none called as channels are.
 fn shot_groups(samples: &[String]) -> Option<Vec<Vec<String>>> {
     let mut groups: IndexMap<&str, Vec<&str>> = IndexMap::new();
     for name in samples {
         let (group, own) = name.rsplit_once('/')?;
         groups.entry(group).or_default().push(own);
     }
-    let is_shot = |group: &&str| is_shot(last(group)) || numbered_name(last(group)).0.is_empty();
-    let alike = groups.values().all(|own| *own == groups[0]);
-    if groups.len() < 2 || !alike || !groups.keys().all(is_shot) {
+    let own = groups.first()?.1.clone();
+    let alike = |of: &Vec<&str>| of.len() == own.len() && of.iter().all(|name| own.contains(name));
+    let are_channels = groups.keys().any(|group| is_channel(last(group)));
+    if groups.len() < 2 || are_channels || !groups.values().all(alike) {
         return None;
     }
-    groups.sort_by_key(|group, _| numbered_name(group).1);
-    let path = |group: &str, own: &[&str]| own.iter().map(|own| format!("{group}/{own}")).collect();
-    Some(groups.iter().map(|(group, own)| path(group, own)).collect())
+    groups.sort_by_cached_key(|group, _| {
+        let (stem, number) = numbered_name(group);
+        (stem.to_lowercase(), number)
+    });
+    let path = |group: &&str| own.iter().map(|own| format!("{group}/{own}")).collect();
+    Some(groups.keys().map(path).collect())
+}
+
+/// The note on groups that are shots but are not called so.
+fn groups_assumed(groups: &[Vec<String>]) -> Option<String> {
+    let first = groups.iter().filter_map(|group| group.first());
+    let names: Vec<String> =
+        first.filter_map(|name| Some(name.rsplit_once('/')?.0.to_owned())).collect();
+    let is_called = |name: &String| is_shot(last(name)) || numbered_name(last(name)).0.is_empty();
+    let example = groups.first()?.first()?;
+    (!names.iter().all(is_called)).then(|| {
+        format!(
+            "each of its {} groups, which have the same datasets, was taken for a shot ({}); channels \
+             are chosen by their whole names, such as --channel {example}",
+            names.len(),
+            list(&names)
+        )
+    })
+}
+
+fn with_note(records: Raw, note: Option<String>) -> Raw {
+    Box::new(records.map(move |record| {
+        let mut record = record?;
+        record.notes.extend(note.clone());
+        Ok(record)
+    }))
 }
 
 /// The records of one group after the other, numbered.

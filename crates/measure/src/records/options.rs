@@ -151,7 +151,7 @@ fn position(names: &[String], wanted: &str) -> Option<usize> {
         .or_else(|| number().filter(|index| *index < names.len()))
 }
 
-fn list(names: &[String]) -> String {
+pub(crate) fn list(names: &[String]) -> String {
     let shown: Vec<&str> = names.iter().take(SHOWN).map(String::as_str).collect();
     let more = if names.len() > SHOWN { ", …" } else { "" };
     shown.join(", ") + more
