@@ -17,8 +17,11 @@ pub(crate) const INTERVALS: &[&str] =
     &["dt", "interval", "interval_s", "sampling_interval", "sampling_interval_s", "tinterval"];
 pub(crate) const RATES: &[&str] =
     &["fs", "rate", "rate_hz", "sample_rate", "sample_rate_hz", "sampling_rate", "samplerate"];
+/// Name of a single number that is an interval in s, if below [`LONGEST_S`]; else of times.
+const PERIOD: &str = "ts";
+const LONGEST_S: f64 = 1.0;
 /// Names of arrays of times without a unit, and in s.
-const TIMES: &[&str] = &["t", "time", "times"];
+const TIMES: &[&str] = &["t", "time", "times", PERIOD];
 const TIMES_S: &[&str] = &["time_s", "t_s"];
 const SPEEDS: &[&str] = &["speed", "speeds", "speed_m_s", "speeds_m_s", "v0"];
 /// Words in names of groups that are channels, not shots; so are single letters from the first on,
@@ -170,6 +173,7 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
     let (times, times_s) = (values(TIMES)?, values(TIMES_S)?);
     let stated_s = first(values(INTERVALS)?)
         .or(first(values(RATES)?).map(f64::recip))
+        .or(first(values(&[PERIOD])?.filter(|it| it.len() == 1 && it[0] < LONGEST_S)))
         .or_else(|| arrays.stated_s())
         .or(step(times_s));
     let mut note = match (stated_s, of(TIMES)) {

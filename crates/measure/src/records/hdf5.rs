@@ -76,17 +76,17 @@ fn beginning(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Bytes of a file in which attributes of groups are searched for.
 const SEARCHED: u64 = 1 << 26;
 
-/// The number that attributes of this name have, whatever they are of, if it is one. The library
+/// The number that attributes of this name, in any case, have, whatever they are of, if it is one. The library
 /// reads numbers of datasets only, so messages are searched for by the name: it stands 8 bytes
 /// after a message's begin, 9 in version 3.
 fn attribute_anywhere(bytes: &[u8], name: &str) -> Option<f64> {
     let ended = [name.as_bytes(), b"\0"].concat();
-    let places = memmem(bytes, &ended);
+    let places = places_of(bytes, &ended);
     let value = |at: usize| {
         let message = |before| {
             let message = bytes.get(at.checked_sub(before)?..)?;
             let found = AttributeMessage::decode(message, &FormatContext::default_v3()).ok()?.0;
-            (found.name == name).then(|| scalar(&found))?
+            found.name.eq_ignore_ascii_case(name).then(|| scalar(&found))?
         };
         message(8).or_else(|| message(9))
     };
@@ -95,10 +95,15 @@ fn attribute_anywhere(bytes: &[u8], name: &str) -> Option<f64> {
     values.all(|value| value == first).then_some(first)
 }
 
-fn memmem<'a>(bytes: &'a [u8], wanted: &'a [u8]) -> impl Iterator<Item = usize> + 'a {
-    let first = wanted.first().copied();
-    let starts = bytes.iter().enumerate().filter(move |(_, byte)| Some(**byte) == first);
-    starts.map(|(at, _)| at).filter(move |at| bytes[*at..].starts_with(wanted))
+/// Where a text is in bytes, in any case.
+fn places_of<'a>(bytes: &'a [u8], wanted: &'a [u8]) -> impl Iterator<Item = usize> + 'a {
+    let first = wanted.first().map(u8::to_ascii_lowercase);
+    let is_first = move |byte: &u8| Some(byte.to_ascii_lowercase()) == first;
+    let starts = bytes.iter().enumerate().filter(move |(_, byte)| is_first(byte));
+    let there = |at: usize| bytes.get(at..at + wanted.len());
+    starts
+        .map(|(at, _)| at)
+        .filter(move |at| there(*at).is_some_and(|it| it.eq_ignore_ascii_case(wanted)))
 }
 
 fn scalar(of: &AttributeMessage) -> Option<f64> {
@@ -245,7 +250,11 @@ impl Arrays for Datasets {
     fn stated_s(&self) -> Option<f64> {
         let number = |names: &[&str]| {
             let datasets = self.names.iter().filter_map(|name| self.dataset(name).ok());
-            let values = |of: &H5Dataset| names.iter().find_map(|name| attribute(of, name).ok());
+            let values = |of: &H5Dataset| {
+                let mut there = of.attr_names().unwrap_or_default();
+                there.retain(|name| names.contains(&&*name.to_lowercase()));
+                there.iter().find_map(|name| attribute(of, name).ok())
+            };
             datasets.into_iter().find_map(|dataset| values(&dataset))
         };
         let bytes = || beginning(&self.file, SEARCHED).unwrap_or_default();

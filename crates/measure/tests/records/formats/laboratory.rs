@@ -80,6 +80,47 @@ fn a_group_a_shot_is_read_in_the_order_of_numbers() {
 }
 
 #[test]
+fn groups_alike_are_shots_whatever_their_names_unless_these_are_channels() {
+    let folder = folder("named-groups");
+    let times = ["2026-11-25T10:00:59", "2026-11-25T10:01:00", "2026-11-25T09:59:58"];
+    for (number, (names, order)) in
+        [(["alpha", "gamma", "beta"], [0, 2, 1]), (times, [2, 0, 1])].into_iter().enumerate()
+    {
+        let file = folder.join(format!("{number}.h5"));
+        shots(&file, &names, &[5e5; 3]);
+        let records = all(&file, &ReadOptions::default());
+        assert_eq!(records.len(), 3);
+        for (record, shot) in records.iter().zip(order) {
+            assert_wave(record, 0, shot, 1.0);
+            assert_wave(record, 1, shot + 1, 1.0);
+            assert!(record.notes[0].contains("taken for a shot"), "{:?}", record.notes);
+        }
+        let paths = [0, 1].map(|group| format!("{}/wall", names[group])).to_vec();
+        let whole = ReadOptions { channels: paths, ..ReadOptions::default() };
+        let channels = all(&file, &whole);
+        assert_eq!((channels.len(), channels[0].channels.len()), (1, 2));
+    }
+    for names in [["ch1", "ch2"], ["Channel 1", "Channel 2"], ["sensor", "wall"], ["A", "B"]] {
+        let file = folder.join("channels.h5");
+        shots(&file, &names, &[5e5; 2]);
+        let error = refusal(&file);
+        assert!(error.contains("4 channels"), "{names:?}: {error}");
+    }
+}
+
+#[test]
+fn rates_are_known_by_their_names_in_any_case() {
+    let file = folder("rate-cases").join("acquisition.h5");
+    let open = H5File::create(&file).unwrap();
+    let group = open.create_group("acquisition").unwrap();
+    let data = group.new_dataset::<f64>().shape([200]).create("voltage").unwrap();
+    data.write_raw(&(0..200).map(|i| super::wave(0, i)).collect::<Vec<f64>>()).unwrap();
+    group.set_attr_numeric("sample_rate_Hz", &5e5).unwrap();
+    open.close().unwrap();
+    assert_eq!(all(&file, &ReadOptions::default())[0].interval_s, 2e-6);
+}
+
+#[test]
 fn rates_that_contradict_each_other_are_none() {
     let file = folder("rates").join("shots.h5");
     shots(&file, &["1", "2"], &[5e5, 1e6]);
