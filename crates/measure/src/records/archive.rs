@@ -10,6 +10,7 @@ use indexmap::IndexMap;
 use std::fs::File;
 use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// Most bytes of shots with alternating samples that are held in memory.
 const MOST_TOGETHER: u64 = 1 << 28;
@@ -24,17 +25,46 @@ pub(crate) enum Packing {
     Zlib,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Stretch {
     pub start: u64,
     /// Bytes in the file.
     pub size: u64,
     pub packing: Packing,
+    /// The temporary file that these are of, if it is not the recording.
+    inflated: Option<Rc<File>>,
 }
 
 impl Stretch {
+    pub(super) fn new(start: u64, size: u64, packing: Packing) -> Self {
+        Self { start, size, packing, inflated: None }
+    }
+
+    /// The same without its first bytes, of what is not compressed.
+    pub(super) fn after(&self, bytes: u64) -> Self {
+        let (start, size) = (self.start.saturating_add(bytes), self.size.saturating_sub(bytes));
+        Self { start, size, ..self.clone() }
+    }
+
+    /// The same, not compressed: what is goes into a temporary file once, for many arrays.
+    pub(super) fn inflated(&self, file: &Path) -> Result<Self> {
+        if self.packing == Packing::Plain {
+            return Ok(self.clone());
+        }
+        let copy = || {
+            let mut copy = tempfile::tempfile()?;
+            let size = io::copy(&mut self.bytes(file)?.take(MOST_INFLATED), &mut copy)?;
+            Ok(Self { inflated: Some(Rc::new(copy)), ..Self::new(0, size, Packing::Plain) })
+        };
+        copy().map_err(|cause| MeasureError::reading(file, cause))
+    }
+
+    fn open(&self, file: &Path) -> io::Result<File> {
+        self.inflated.as_ref().map_or_else(|| File::open(file), |copy| copy.try_clone())
+    }
+
     fn bytes(&self, file: &Path) -> io::Result<Box<dyn Read>> {
-        let mut opened = File::open(file)?;
+        let mut opened = self.open(file)?;
         opened.seek(SeekFrom::Start(self.start))?;
         let bytes = BufReader::new(opened).take(self.size);
         Ok(match self.packing {
@@ -120,7 +150,7 @@ impl StoredArray {
                 let detail = format!("{} of {end} bytes of an array", self.within.size);
                 return Err(MeasureError::truncated(file_name(file), detail));
             }
-            let opened = File::open(file).map_err(reading)?;
+            let opened = self.within.open(file).map_err(reading)?;
             return Ok((opened, self.within.start + self.start));
         }
         if end > MOST_INFLATED {

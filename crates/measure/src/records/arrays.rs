@@ -191,6 +191,9 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
         let single = |shape: Vec<usize>| shape.iter().all(|size| *size == 1);
         !is(&known, name) && !arrays.shape(name).is_ok_and(single)
     });
+    if samples.is_empty() {
+        return Err(no_samples(arrays.file(), &names));
+    }
     let mut read = options.clone();
     if let Some((others, step)) = time_column(&*arrays, &samples, options) {
         read = others;
@@ -245,6 +248,18 @@ fn time_column(
         ..options.clone()
     };
     Some((others, step))
+}
+
+pub(crate) fn no_samples(file: &Path, names: &[String]) -> MeasureError {
+    let mut detail = "holds no samples".to_owned();
+    if !names.is_empty() {
+        detail += &format!(", only {}", list(names));
+    }
+    if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mat")) {
+        detail += "; arrays, structs and cells of numbers are read, not objects, tables nor cells of \
+                   version 7.3: save these with -v7";
+    }
+    MeasureError::Samples(file_name(file), detail)
 }
 
 pub(crate) fn last(name: &str) -> &str {
@@ -309,8 +324,12 @@ fn of_samples(
     Ok((records, recordings))
 }
 
+/// Whether a name is that of a shot, or of a cell of MATLAB.
 fn is_shot(name: &str) -> bool {
     let (stem, number) = numbered_name(name);
+    if name.ends_with('}') {
+        return true;
+    }
     let word = stem.trim_end_matches(['_', '-', ' ']).to_lowercase();
     number.is_some() && SHOTS.contains(&word.as_str())
 }
@@ -321,7 +340,9 @@ fn is_channel(name: &str) -> bool {
     words.any(|word| CHANNELS.contains(&word)) || LETTERS.contains(&numbered_name(&name).0)
 }
 
+/// A name without its number at the end, which may stand in brackets.
 fn numbered_name(name: &str) -> (&str, Option<u64>) {
+    let name = name.trim_end_matches(['}', ')']);
     let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     (stem, name[stem.len()..].parse().ok())
 }

@@ -39,11 +39,13 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     }
     let mut names: IndexSet<String> = open.dataset_names().into_iter().collect();
     names.retain(|name| is_numbers(&open, name));
-    if names.is_empty() {
-        return Err(MeasureError::empty(file_name(file)));
-    }
     let by_matlab = beginning(file, MATLAB.len() as u64);
     let by_matlab = by_matlab.is_ok_and(|bytes| bytes == MATLAB);
+    match names.is_empty() {
+        true if by_matlab => return Err(arrays::no_samples(file, &[])),
+        true => return Err(MeasureError::empty(file_name(file))),
+        false => {}
+    }
     arrays::open(Rc::new(Datasets { file: file.to_owned(), open, names, by_matlab }), options)
 }
 

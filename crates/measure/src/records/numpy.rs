@@ -17,7 +17,7 @@ use zip::{CompressionMethod, ZipArchive};
 const MOST_HEADER: usize = 10_000;
 
 pub(crate) fn open_npy(file: &Path, options: &ReadOptions) -> Result<Raw> {
-    let whole = Stretch { start: 0, size: u64::MAX, packing: Packing::Plain };
+    let whole = Stretch::new(0, u64::MAX, Packing::Plain);
     let arrays = IndexMap::from([(String::new(), Ok(array(file, whole)?))]);
     arrays::open(Rc::new(Archive { file: file.to_owned(), arrays }), options)
 }
@@ -44,7 +44,7 @@ pub(crate) fn open_npz(file: &Path, options: &ReadOptions) -> Result<Raw> {
         };
         let start = entry.data_start();
         let start = start.ok_or_else(|| refused(format!("{name} has no place in the file")))?;
-        let within = Stretch { start, size: entry.compressed_size(), packing };
+        let within = Stretch::new(start, entry.compressed_size(), packing);
         arrays.insert(name, array(file, within));
     }
     arrays::open(Rc::new(Archive { file: file.to_owned(), arrays }), options)

@@ -93,7 +93,11 @@ impl Iterator for Records {
     type Item = Result<Record>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let record = self.records.next()?;
+        let record = match self.records.next() {
+            // A file without records has a reason, too.
+            None if self.count == 0 => Err(MeasureError::empty(file_name(&self.file))),
+            found => found?,
+        };
         self.count += 1;
         if self.count > MOST_RECORDS {
             self.records = Box::new(std::iter::empty());

@@ -46,6 +46,67 @@ with open("seven.mat", "r+b") as file:
     assert!(error.contains("ends too early"), "{error}");
 }
 
+#[test]
+fn cells_and_structs_of_matlab_are_read_as_what_they_hold() {
+    let folder = folder("matlab-cells");
+    let program = WAVE.to_owned()
+        + r#"
+import scipy.io
+def cells(*values, shape=(1, -1)):
+    made = numpy.empty(len(values), object)
+    made[:] = values
+    return made.reshape(shape)
+shots = cells(*(wave(shot) for shot in range(12)))
+table = cells(*(wave(n) for n in (0, 1, 1, 2, 2, 3)), shape=(3, 2))
+one = {"signal": wave(0), "fs": 1e6, "by": "a text"}
+many = numpy.array([(wave(n), 1e6) for n in range(3)], [("signal", object), ("fs", object)])
+for packed in (False, True):
+    for name, all in {
+        "cells": {"shots": shots, "fs": 1e6},
+        "table": {"shots": table, "Ts": 1e-6},
+        "one": {"data": one},
+        "many": {"data": many},
+        "within": {"runs": cells({"signal": wave(0), "Ts": 1e-6}, {"signal": wave(1), "Ts": 1e-6})},
+    }.items():
+        scipy.io.savemat(f"{name}-{packed}.mat", all, do_compression=packed)
+scipy.io.savemat("empty.mat", {"shots": cells("one text", "another"), "fs": 1e6})
+"#;
+    if python(&folder, &program).is_none() {
+        return;
+    }
+    for (name, shots, channels) in
+        [("cells", 12, 1), ("table", 3, 2), ("one", 1, 1), ("many", 3, 1), ("within", 2, 1)]
+    {
+        for packed in ["False", "True"] {
+            let records =
+                all(&folder.join(format!("{name}-{packed}.mat")), &ReadOptions::default());
+            let sizes = (records.len(), records[0].channels.len(), records[0].interval_s);
+            assert_eq!(sizes, (shots, channels, 1e-6), "{name}");
+            for (shot, record) in records.iter().enumerate() {
+                for channel in 0..channels {
+                    assert_wave(record, channel, shot + channel, 1.0);
+                }
+            }
+        }
+    }
+    let both = ["shots{1}", "shots{2}"].map(str::to_owned).to_vec();
+    let both = ReadOptions { channels: both, ..ReadOptions::default() };
+    assert_wave(&all(&folder.join("cells-True.mat"), &both)[0], 1, 1, 1.0);
+    let error = refusal(&folder.join("empty.mat"));
+    assert!(error.contains("holds no samples, only fs"), "{error}");
+}
+
+#[test]
+fn cells_of_version_7_3_are_refused_with_what_to_do() {
+    let file = folder("matlab-references").join("cells.mat");
+    let open = H5File::options().userblock(512).create(&file).unwrap();
+    let rate = open.new_dataset::<f64>().shape([1]).create("fs").unwrap();
+    rate.write_raw(&[1e6]).unwrap();
+    open.close().unwrap();
+    let error = refusal(&file);
+    assert!(error.contains("only fs") && error.contains("-v7"), "{error}");
+}
+
 fn refusal(file: &Path) -> String {
     let mut records = read(file, &ReadOptions::default());
     records.next().unwrap().unwrap_err().to_string()
