@@ -2,6 +2,7 @@
 
 use crate::Shot;
 use crate::error::{MeasureError, Result};
+use crate::signal::PulseKind;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::collections::{HashMap, HashSet};
 use std::ffi::OsString;
@@ -112,6 +113,9 @@ impl ShotList {
     pub(crate) fn unmatched(&self, files: &[PathBuf], shots: &[Shot]) -> Vec<String> {
         let (mut used, mut unmatched) = (HashSet::new(), Vec::new());
         for shot in shots {
+            if let Err(error @ MeasureError::List(_)) = &shot.flight {
+                unmatched.push(error.to_string());
+            }
             match self.find(&shot.file, shot.shot) {
                 Some(entry) => drop(used.insert(entry.line)),
                 None if shot.speed_m_s.is_some() => {}
@@ -131,6 +135,19 @@ impl ListEntry {
     /// table numbers shots.
     fn means(&self, file: &Path, shot: Option<u64>) -> bool {
         file.ends_with(&self.file) && (self.shot.is_none() || self.shot == shot)
+    }
+
+    /// Error of a time that was picked where a record of this duration has no samples.
+    pub(crate) fn pick_outside(&self, source: &str, duration_s: f64) -> Option<MeasureError> {
+        let mut picks = PulseKind::ALL.into_iter().zip(self.picks_s);
+        let (kind, time_s) = picks.find_map(|(kind, time_s)| {
+            Some((kind, time_s.filter(|time_s| *time_s > duration_s)?))
+        })?;
+        Some(MeasureError::List(format!(
+            "the {kind} pick of {time_s} s (line {} of the table of shots) lies outside {source}, which \
+             lasts from 0 to {duration_s:.9} s",
+            self.line
+        )))
     }
 
     /// Why no shot found this line; `None` if its file gave none at all.

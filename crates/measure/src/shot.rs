@@ -29,6 +29,8 @@ pub struct Shot {
     pub speed_m_s: Option<Estimate>,
     /// Time between samples in s.
     pub interval_s: f64,
+    /// How long its samples last in s.
+    pub(crate) duration_s: f64,
     /// Times of flight, heights, widths; or why there are none.
     pub flight: Result<Flight>,
     /// What is doubtful.
@@ -90,6 +92,7 @@ impl Shot {
             programmed_speed_m_s: record.programmed_speed_m_s,
             speed_m_s: record.speed_m_s.map(|value| Estimate { value, sigma: 0.0 }),
             interval_s: record.interval_s,
+            duration_s: record.len() as f64 * record.interval_s,
             flight,
             doubts,
             untriggered: record.triggered == Some(false),
@@ -114,7 +117,10 @@ impl Shot {
         }
         if let Some(entry) = entry.filter(|entry| entry.picks_s.iter().any(Option::is_some)) {
             let sigma_s = entry.pick_error_s.unwrap_or(self.interval_s);
-            self.pick_by_hand(entry.picks_s, sigma_s, options.measuring.calibration);
+            match entry.pick_outside(&self.source, self.duration_s) {
+                Some(error) => self.flight = Err(error),
+                None => self.pick_by_hand(entry.picks_s, sigma_s, options.measuring.calibration),
+            }
         }
     }
 

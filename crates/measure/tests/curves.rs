@@ -472,3 +472,24 @@ fn picks_by_hand_replace_those_of_the_program_and_make_shots_count() {
         assert!(shot.flags().contains("wall pulse picked by hand"), "{}", shot.flags());
     }
 }
+
+#[test]
+fn picks_by_hand_outside_the_record_are_refused() {
+    let folder = folder("by-hand-outside");
+    let path = folder.join("series.h5");
+    let mut writer = SeriesWriter::create(&path, &info("dry", &[])).unwrap();
+    push(&mut writer, 0, 0.5, &samples(700.0, 9000.0, 0));
+    push(&mut writer, 1, 0.5, &samples(700.0, 9000.0, 1));
+    writer.finish().unwrap();
+    // Of 4 ms.
+    let text = "file,shot,wall pick\nseries.h5,0,9\nseries.h5,1,3.9e-3\n";
+    let list = Some(ShotList::parse(text).unwrap());
+    let measured = measure(&[path], &Options { list, ..Options::default() }, &());
+    assert_eq!(measured.shots[0].reasons(true), ["no-time"]);
+    assert!(measured.shots[1].flight.is_ok());
+    let reported = &measured.unmatched[0];
+    for part in ["wall pick of 9 s (line 2 ", "series.h5", "shot 0", "from 0 to 0.004000000 s"] {
+        assert!(reported.contains(part), "{reported}");
+    }
+    assert!(measured.shots[0].flags().contains(reported.as_str()));
+}
