@@ -495,3 +495,55 @@ fn a_folders_other_files_are_listed_once_and_the_table_excludes_shots() {
     assert!(page.contains("excluded by the list of shots; does not count: excluded"), "{page}");
     assert!(page.contains("data:image/svg+xml,%3Csvg"));
 }
+
+#[test]
+fn hidden_files_and_tables_of_shots_in_a_folder_are_passed_over() {
+    let folder = folder("passed-over");
+    write(&folder.join("a.csv"), &volts(0.5, 1.0));
+    fs::write(folder.join("._a.csv"), [0; 16]).unwrap();
+    fs::write(folder.join(".DS_Store"), [0; 16]).unwrap();
+    fs::write(folder.join("shots.csv"), "file,speed\na.csv,0.4\n").unwrap();
+    fs::write(folder.join("hand.csv"), "file,speed\na.csv,0.5\n").unwrap();
+    let output = measure(&folder, &[".", "--shots", "hand.csv"]);
+    let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{reported}");
+    assert!(reported.contains("not read as recordings: ._a.csv, shots.csv;"), "{reported}");
+}
+
+#[test]
+fn binary_files_of_instruments_in_a_folder_are_listed_with_their_export() {
+    let folder = folder("instruments");
+    let trc = b"#9000015346WAVEDESC\x00";
+    for (name, bytes) in
+        [("a.trc", &trc[..]), ("b.trc", trc), ("c.bin", b"RG01\x00\x01"), ("d.bin", b"\x00")]
+    {
+        fs::write(folder.join(name), bytes).unwrap();
+    }
+    let alone = measure(&folder, &["."]);
+    let reported = String::from_utf8_lossy(&alone.stderr).into_owned();
+    assert_eq!(alone.status.code(), Some(2));
+    for whose in
+        ["a.trc is a binary file (.trc) of a LeCroy", "c.bin is a binary file (.bin) of a Rigol"]
+    {
+        assert_eq!(reported.matches(whose).count(), 1, "{reported}");
+    }
+    write(&folder.join("e.csv"), &volts(0.5, 1.0));
+    let beside = measure(&folder, &["."]);
+    let reported = String::from_utf8_lossy(&beside.stderr).into_owned();
+    assert_eq!(beside.status.code(), Some(0), "{reported}");
+    assert!(
+        reported.contains("a.trc and 1 more: is a binary file (.trc) of a LeCroy"),
+        "{reported}"
+    );
+    assert!(reported.contains("not read as recordings: d.bin;"), "{reported}");
+}
+
+#[test]
+fn nothing_is_measured_without_a_reason() {
+    let folder = folder("no-reason");
+    fs::write(folder.join("list.csv"), "file,speed\na.csv,0.5\n").unwrap();
+    let output = measure(&folder, &["list.csv", "--shots", "list.csv"]);
+    let reported = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(reported.contains("nothing was measured: there is no recording"), "{reported}");
+}

@@ -57,20 +57,10 @@ impl ShotList {
     /// # Errors
     /// [`MeasureError::List`] with the line.
     pub fn parse(text: &str) -> Result<Self> {
-        let text = text.trim_start_matches('\u{feff}');
-        let mut titles = text.lines().map(str::trim);
-        let titles = titles.find(|line| !line.is_empty() && !line.starts_with('#'));
-        let mut marks = [b';', b'\t'].into_iter();
-        let delimiter = marks.find(|mark| titles.is_some_and(|t| t.contains(char::from(*mark))));
-        let mut reader = ReaderBuilder::new()
-            .delimiter(delimiter.unwrap_or(b','))
-            .comment(Some(b'#'))
-            .trim(Trim::All)
-            .flexible(true)
-            .from_reader(text.as_bytes().chain(b"\n".as_slice()));
+        let (mut reader, decimal_comma) = reader(text);
         let malformed = |error: csv::Error| MeasureError::List(error.to_string());
         let titles = reader.headers().map_err(malformed)?.clone();
-        let columns = ListColumns::new(&titles, delimiter.is_some())?;
+        let columns = ListColumns::new(&titles, decimal_comma)?;
         let (mut entries, mut row) = (Vec::new(), StringRecord::new());
         let mut by_name: HashMap<OsString, Vec<usize>> = HashMap::new();
         while reader.read_record(&mut row).map_err(malformed)? {
@@ -85,6 +75,19 @@ impl ShotList {
             }
         }
         Ok(Self { entries, by_name })
+    }
+
+    /// Whether a text begins as such a table does: its titles are those of files and of something
+    /// else, and what is first in the column of files is no number.
+    pub(crate) fn is_begun_by(text: &str) -> bool {
+        let (mut reader, _) = reader(text);
+        let places = reader.headers().map(places).unwrap_or_default();
+        let Some(file) = places[0].filter(|_| places.iter().flatten().count() > 1) else {
+            return false;
+        };
+        let is_number =
+            |row: &StringRecord| row.get(file).is_some_and(|it| it.parse::<f64>().is_ok());
+        !reader.records().next().is_some_and(|row| row.is_ok_and(|row| is_number(&row)))
     }
 
     /// The speed of a file's shot and its standard error in m/s, if the table has them.
@@ -126,6 +129,32 @@ impl ShotList {
         unmatched.extend(unused.filter_map(|entry| entry.unused(files, shots)));
         unmatched
     }
+}
+
+/// A reader of a table, and whether commas are decimal in it.
+fn reader(text: &str) -> (csv::Reader<impl Read>, bool) {
+    let text = text.trim_start_matches('\u{feff}');
+    let mut titles = text.lines().map(str::trim);
+    let titles = titles.find(|line| !line.is_empty() && !line.starts_with('#'));
+    let mut marks = [b';', b'\t'].into_iter();
+    let delimiter = marks.find(|mark| titles.is_some_and(|t| t.contains(char::from(*mark))));
+    let reader = ReaderBuilder::new()
+        .delimiter(delimiter.unwrap_or(b','))
+        .comment(Some(b'#'))
+        .trim(Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes().chain(b"\n".as_slice()));
+    (reader, delimiter.is_some())
+}
+
+/// Which columns have which of [`TITLES`].
+fn places(titles: &StringRecord) -> [Option<usize>; 10] {
+    let plain = |title: &str| {
+        let name = title.split(['(', '[']).next().unwrap_or_default();
+        name.trim().to_lowercase().replace('_', " ")
+    };
+    let titles: Vec<String> = titles.iter().map(plain).collect();
+    TITLES.map(|names| titles.iter().position(|title| names.contains(&&**title)))
 }
 
 const SHOWN: usize = 6;
@@ -192,13 +221,7 @@ impl ListColumns {
                 "the column {title:?} has another unit: speeds and their errors are in m/s, picks in s"
             )));
         }
-        let plain = |title: &str| {
-            let name = title.split(['(', '[']).next().unwrap_or_default();
-            name.trim().to_lowercase().replace('_', " ")
-        };
-        let titles: Vec<String> = titles.iter().map(plain).collect();
-        let place = |names: &[&str]| titles.iter().position(|title| names.contains(&&**title));
-        let places = TITLES.map(place);
+        let places = places(titles);
         let detail = "the first line must name the columns: file, and any of shot, case, speed, speed error, \
              counts, incident pick, wall pick, reflected pick, pick error";
         let no_file = || MeasureError::List(detail.to_owned());

@@ -23,6 +23,7 @@ use hertzchain_measure::signal::{
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Note, Options, Shot, ShotList, Watch, speeds_csv,
 };
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::fs;
 use std::io::ErrorKind;
@@ -57,15 +58,18 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Ve
         }
         let (found, mut others) = inside(path)?;
         files.extend(found);
-        others.retain(|other| !is_list(other));
-        notes.extend(passed_over(path, &others));
+        others.retain(|(other, _)| !is_list(other));
+        notes.extend(passed_over(path, others));
     }
     files.retain(|file| !is_list(file));
     Ok((files, notes))
 }
 
+/// What a folder has beside recordings; an instrument's binary file with how it is exported.
+type Others = Vec<(PathBuf, Option<String>)>;
+
 /// Recordings in a folder, and what else is there, in order of their names.
-pub(crate) fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
+pub(crate) fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Others), Failure> {
     let refused = |error| Failure::User(format!("{}: {error}", folder.display()));
     let entries = fs::read_dir(folder).map_err(refused)?;
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -74,40 +78,67 @@ pub(crate) fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), 
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         name.eq_ignore_ascii_case("readme")
     };
-    let is_ours = |path: &PathBuf| path.is_file() && is_recording(path) && !is_readme(path);
-    Ok(paths.into_iter().partition(is_ours))
+    let (mut found, mut others) = (Vec::new(), Vec::new());
+    for path in paths {
+        match if path.is_file() && !is_readme(&path) { is_recording(&path) } else { Err(None) } {
+            Ok(()) => found.push(path),
+            Err(export) => others.push((path, export)),
+        }
+    }
+    Ok((found, others))
 }
 
 /// The same of a folder that must have recordings.
-fn inside(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Failure> {
+fn inside(folder: &Path) -> Result<(Vec<PathBuf>, Others), Failure> {
     let (found, others) = recordings(folder)?;
-    match found.is_empty() {
-        true => Err(Failure::User(format!(
-            "{}: no recordings in it (of .h5, .mat, .csv, .txt, .npy, .npz, .wav, .tdms and their like)",
-            folder.display()
-        ))),
-        false => Ok((found, others)),
+    if !found.is_empty() {
+        return Ok((found, others));
     }
+    let name = |file: &PathBuf| file.file_name().unwrap_or_default().display().to_string();
+    let export = |(export, files): (String, Vec<PathBuf>)| {
+        format!("; {} {export}", files.first().map(name).unwrap_or_default())
+    };
+    let exports: String = to_export(&others).into_iter().map(export).collect();
+    Err(Failure::User(format!(
+        "{}: no recordings in it (of .h5, .mat, .csv, .txt, .npy, .npz, .wav, .tdms and their like){exports}",
+        folder.display()
+    )))
+}
+
+/// Binary files of instruments, by how they are exported.
+fn to_export(others: &Others) -> BTreeMap<String, Vec<PathBuf>> {
+    let mut files: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    for (file, export) in others {
+        if let Some(export) = export {
+            files.entry(export.clone()).or_default().push(file.clone());
+        }
+    }
+    files
 }
 
 const MOST_NAMES: usize = 8;
 
-/// The note on what a folder has beside recordings, but for hidden files.
-fn passed_over(folder: &Path, others: &[PathBuf]) -> Option<Note> {
+/// Notes on what a folder has beside recordings, but for hidden files without an extension: one a kind
+/// of instruments' binary files, and one on the others.
+fn passed_over(folder: &Path, others: Others) -> Vec<Note> {
+    let exports = to_export(&others).into_iter().map(|(text, files)| Note { text, files });
     let name = |path: &PathBuf| {
-        let name = path.file_name()?.to_str().filter(|name| !name.starts_with('.'))?;
-        Some(if path.is_dir() { format!("{name}/") } else { name.to_owned() })
+        let name = path.file_name()?.to_str()?;
+        let is_listed = !name.starts_with('.') || path.extension().is_some();
+        is_listed.then(|| if path.is_dir() { format!("{name}/") } else { name.to_owned() })
     };
-    let names: Vec<String> = others.iter().filter_map(name).collect();
+    let plain = others.iter().filter(|other| other.1.is_none());
+    let names: Vec<String> = plain.filter_map(|other| name(&other.0)).collect();
     let more = match names.len().saturating_sub(MOST_NAMES) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
     let shown = names.get(..MOST_NAMES).unwrap_or(&names).join(", ");
-    (!names.is_empty()).then(|| Note {
+    let listed = (!names.is_empty()).then(|| Note {
         text: format!("not read as recordings: {shown}{more}; a file that is named is read"),
         files: vec![folder.to_owned()],
-    })
+    });
+    exports.chain(listed).collect()
 }
 
 /// Times of flight of recordings: every shot, and curves against speed.
@@ -366,6 +397,7 @@ pub fn evaluate(measured: &Measurement) -> Result<(), Failure> {
     let timeless = measured.shots.iter().filter(|shot| shot.flight.is_err());
     let timeless = timeless.count();
     let wrong = match (refused, timeless) {
+        (0, 0) if all == 0 => Some("there is no recording beside the table of shots".to_owned()),
         (0, 0) => None,
         (0, _) => Some(no_time(timeless, all)),
         (_, 0) => Some(format!("{refused} of {all} records were refused")),

@@ -1,5 +1,6 @@
 //! Records of a file of any format, one by one.
 
+use crate::ShotList;
 use crate::error::{MeasureError, Result, file_name};
 #[cfg(feature = "hdf5")]
 use crate::records::hdf5::open as open_hdf5;
@@ -56,10 +57,36 @@ const VENDORS: [(usize, &[u8], &str, &str); 12] = [
     (0, b"", "trc", "a LeCroy oscilloscope"),
 ];
 
-/// Whether a file's extension is one of recordings that are read.
-pub fn is_recording(file: &Path) -> bool {
+/// Whether a file of a folder is a recording: by its extension, unless it is hidden or a table of shots.
+///
+/// # Errors
+/// It is none; of an instrument's binary file with how it is exported.
+pub fn is_recording(file: &Path) -> Result<(), Option<String>> {
     let extension = extension(file);
-    FORMATS.iter().any(|format| format.2.contains(&&*extension))
+    let is_such = |format: &&Format| format.2.contains(&&*extension);
+    let is_hidden = file.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+    let bytes = || probe(file).unwrap_or_default();
+    match FORMATS.iter().find(is_such) {
+        _ if is_hidden => Err(None),
+        Some(("text", ..)) => {
+            let begins = text::decoded(&bytes()).into_owned();
+            let is_table = ShotList::is_begun_by(&String::from_utf8_lossy(&begins));
+            if is_table { Err(None) } else { Ok(()) }
+        }
+        Some(_) => Ok(()),
+        None if VENDORS.iter().any(|vendor| vendor.2 == extension) => {
+            Err(vendor(&bytes(), &extension))
+        }
+        None => Err(None),
+    }
+}
+
+fn probe(file: &Path) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let opened = File::open(file);
+    let read = opened.and_then(|file| file.take(PROBE).read_to_end(&mut bytes));
+    read.map_err(|cause| MeasureError::reading(file, cause))?;
+    Ok(bytes)
 }
 
 #[cfg(not(feature = "hdf5"))]
@@ -266,10 +293,7 @@ fn divided(records: Raw, most: usize, parts: Parts) -> Raw {
 
 /// The reader of a file by its content, unless its extension promises another.
 fn format_of(file: &Path) -> Result<Open> {
-    let mut bytes = Vec::new();
-    let opened = File::open(file);
-    let read = opened.and_then(|file| file.take(PROBE).read_to_end(&mut bytes));
-    read.map_err(|cause| MeasureError::reading(file, cause))?;
+    let bytes = probe(file)?;
     if bytes.is_empty() {
         return Err(MeasureError::empty(file_name(file)));
     }

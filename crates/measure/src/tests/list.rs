@@ -87,3 +87,23 @@ fn a_list_has_times_that_were_picked_by_hand() {
     let other = ShotList::parse("file,wall pick (us)\na.csv,1200\n");
     assert!(matches!(other, Err(MeasureError::List(ref why)) if why.contains("picks in s")));
 }
+
+#[test]
+fn tables_of_shots_are_known_by_their_titles() {
+    for text in [
+        "file,case,speed\na.csv,dry,0.5\n",
+        "# by hand\n\nFile;Shot;Speed (m/s)\na.h5;1;0,5\n",
+        "file,speed (mm/s)\n",
+    ] {
+        assert!(ShotList::is_begun_by(text), "{text:?}");
+    }
+    for text in [
+        "",
+        "file\na.csv\n",
+        "time,volt\n0,1\n",
+        "Record,Segment,Time,Volt\n1,1,0,0.5\n",
+        "1.5\n2.5\n",
+    ] {
+        assert!(!ShotList::is_begun_by(text), "{text:?}");
+    }
+}
