@@ -37,7 +37,8 @@ def test_a_file_that_is_not_there_is_a_file_not_found_error(call):
 def test_a_record_that_can_not_be_read_and_a_speed_that_is_none_warn(tmp_path, small):
     (tmp_path / "empty.csv").write_text("")
     with pytest.warns(hc.ExperimentWarning, match="nothing was measured"):
-        hc.measure(tmp_path / "empty.csv")
+        measured = hc.measure(tmp_path / "empty.csv")
+    assert "0 of 1 records" in str(measured)
     for call in (hc.sweep, hc.ensemble):
         with pytest.warns(hc.ExperimentWarning, match="1 of 2 shots"):
             call(small, [0.5, np.nan])

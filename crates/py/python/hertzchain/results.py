@@ -710,7 +710,7 @@ class MeasureResult(Result):
 
     def _summary(self) -> tuple[str, dict[str, str]]:
         timed = sum("missing" not in shot for shot in self.shots)
-        rows = {"times of flight": f"{timed} of {len(self.shots)} records"}
+        rows = {"times of flight": f"{timed} of {len(self.shots) + len(self.refused)} records"}
         rows |= {case.name or "(unnamed)": f"{case['speed_m_s'].size} speeds" for case in self.cases.values()}
         return "Measured", rows | ({"refused": str(len(self.refused))} if self.refused else {})
 
