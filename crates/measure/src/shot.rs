@@ -30,7 +30,7 @@ pub struct Shot {
     /// Time between samples in s.
     pub interval_s: f64,
     /// How long its samples last in s.
-    pub(crate) duration_s: f64,
+    pub duration_s: f64,
     /// Times of flight, heights, widths; or why there are none.
     pub flight: Result<Flight>,
     /// What is doubtful.

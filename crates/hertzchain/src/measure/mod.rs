@@ -397,7 +397,9 @@ pub fn evaluate(measured: &Measurement) -> Result<(), Failure> {
     let timeless = measured.shots.iter().filter(|shot| shot.flight.is_err());
     let timeless = timeless.count();
     let wrong = match (refused, timeless) {
-        (0, 0) if all == 0 => Some("there is no recording beside the table of shots".to_owned()),
+        (0, 0) if all == 0 => {
+            Some("there is no recording, or none but the table of shots".to_owned())
+        }
         (0, 0) => None,
         (0, _) => Some(no_time(timeless, all)),
         (_, 0) => Some(format!("{refused} of {all} records were refused")),

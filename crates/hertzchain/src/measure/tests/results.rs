@@ -30,6 +30,7 @@ fn measured(shots: usize) -> Measurement {
         programmed_speed_m_s: None,
         speed_m_s: None,
         interval_s: 1e-6,
+        duration_s: 10e-3,
         flight: Ok(picks.flight()),
         doubts: Vec::new(),
         untriggered: false,
