@@ -20,6 +20,7 @@ pub mod rig;
 
 mod batch;
 mod calibration;
+mod contact_peaks;
 mod describe;
 mod duration;
 mod engine;
