@@ -274,8 +274,9 @@ fn at_optimum(merit: &Merit<'_>, best: &Descent<'_>) -> Result<Fit, InferError> 
         None => (&best.steps, &[][..]),
     };
     let (jacobian, slopes) = jacobian(merit, (point, at), steps, known).map_err(|error| {
+        let values = named(parameters, point);
         InferError::Model(format!(
-            "the fit came to {point:?}, next to which the model fails: {error}"
+            "the fit came to {values}, next to which the model fails: {error}"
         ))
     })?;
     let no_change = |k: &usize| {
@@ -304,14 +305,19 @@ fn at_optimum(merit: &Merit<'_>, best: &Descent<'_>) -> Result<Fit, InferError> 
 /// Most values that a message names.
 const NAMED: usize = 6;
 
-fn start_fails(parameters: &[Parameter], point: &[f64], error: &ModelError) -> InferError {
+/// Parameters with their values and units.
+fn named(parameters: &[Parameter], point: &[f64]) -> String {
     let values = parameters.iter().zip(point).take(NAMED);
     let values = values.map(|(p, v)| format!("{} = {v:.4e} {}", p.name, p.unit).trim_end().into());
     let values: Vec<String> = values.collect();
     let more = if parameters.len() > NAMED { ", …" } else { "" };
+    values.join(", ") + more
+}
+
+fn start_fails(parameters: &[Parameter], point: &[f64], error: &ModelError) -> InferError {
     InferError::Model(format!(
-        "no residuals at the start: with {}{more}: {error}. Start elsewhere (--start, in SI or with a unit)",
-        values.join(", ")
+        "no residuals at the start: with {}: {error}. Start elsewhere (--start, in SI or with a unit)",
+        named(parameters, point)
     ))
 }
 
