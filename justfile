@@ -64,6 +64,10 @@ fuzz target seconds="60":
 bench-picking *options:
     cargo run --release --locked -p hertzchain-picking -- {{options}}
 
+# Coverage of fits, with nuisance parameters and joint: just bench-coverage 500 50 joint-delay
+bench-coverage *options:
+    cargo run --release --locked -p hertzchain-infer --example coverage -- {{options}}
+
 # The same shots by general integrators and LAMMPS, side by side (needs Python; about ten minutes)
 bench-peers *options:
     bench/peers/run.sh {{options}}
