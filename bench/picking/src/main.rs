@@ -22,10 +22,11 @@ const SPEEDS_M_S: [f64; 6] = [0.08, 0.2, 0.5, 1.2, 2.0, 2.5];
 const USAGE: &str = "usage: hertzchain-picking [SHOTS] [--seed N] [--only TEXT] [--each] \
                      [--alone] [--compare] [--chains N] [--first N] [--write FOLDER]";
 const HEADER: &str = "\
-| records | shots | timed | counted | incident: within 1.96, % | made/stated | reflected: % | made/stated \
-| counted, incident: % | made/stated | reflected: % | made/stated | returns | χ² of means, incident \
-| reflected | χ² of exponents, incident | reflected | correlation made | stated | worst row, incident | reflected |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
+| records | shots | timed | counted | incident: within 1.96, % | made/stated | mean pull \
+| reflected: % | made/stated | mean pull | counted, incident: % | made/stated | mean pull \
+| reflected: % | made/stated | mean pull | returns | χ² of means, incident | reflected \
+| χ² of exponents, incident | reflected | correlation made | stated | worst row, incident | reflected |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 
 const COMPARED: &str = "\
 | records | incident, ns: default | quartic | averaged | default within 1.1 of the best, most \

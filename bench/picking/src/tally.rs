@@ -45,11 +45,14 @@ impl Pulls {
         }
     }
 
-    /// Per cent within 1.96 and root mean square, of either time.
+    /// Per cent within 1.96, root mean square and mean, of either time.
     pub(crate) fn cells(&self) -> String {
         let cell = |pulls: &Vec<f64>| match coverage(pulls, WITHIN) {
-            Some(of) => format!("{:.1} | {:.2}", 100.0 * of.share, of.scale),
-            None => "– | –".to_owned(),
+            Some(of) => {
+                let mean = pulls.iter().sum::<f64>() / pulls.len() as f64;
+                format!("{:.1} | {:.2} | {mean:+.2}", 100.0 * of.share, of.scale)
+            }
+            None => "– | – | –".to_owned(),
         };
         self.0.each_ref().map(cell).join(" | ")
     }
@@ -245,6 +248,7 @@ fn shot_of(row: &Row, (samples, speed_m_s): &(Vec<Vec<f64>>, f64), fault: &Fault
         gap_in_pulse: false,
         holds_several: false,
         excluded: false,
+        undecided: false,
         samples,
     }
 }

@@ -16,13 +16,17 @@ impl Measurement {
         let examples = self.examples.iter().chain(&self.flagged);
         let numbers: Vec<Option<usize>> = examples.map(number).collect();
         pick_with_common_shapes(&mut self.shots, grouping);
+        let curves = Curves::of(&self.shots, grouping);
+        self.shots.iter_mut().for_each(|shot| shot.undecided = false);
+        curves.undecided.iter().for_each(|number| self.shots[*number].undecided = true);
         let examples = self.examples.iter_mut().chain(&mut self.flagged);
-        for (example, number) in examples.zip(numbers) {
+        for (Example { shot, .. }, number) in examples.zip(numbers) {
             if let Some(number) = number {
-                example.shot.flight = self.shots[number].flight.clone();
+                let Shot { flight, undecided, .. } = &self.shots[number];
+                (shot.flight, shot.undecided) = (flight.clone(), *undecided);
             }
         }
-        Curves::of(&self.shots, grouping)
+        curves
     }
 }
 
@@ -30,7 +34,7 @@ impl Measurement {
 fn pick_with_common_shapes(shots: &mut [Shot], grouping: &Grouping) {
     let mut cases: IndexMap<&str, Vec<(usize, GroupSpeed)>> = IndexMap::new();
     for (number, shot) in
-        shots.iter().enumerate().filter(|(_, shot)| shot.reasons(false).is_empty())
+        shots.iter().enumerate().filter(|(_, shot)| shot.own_reasons(false).is_empty())
     {
         let speed = GroupSpeed::new(shot).map(|speed| (number, speed));
         cases.entry(&shot.case).or_default().extend(speed);

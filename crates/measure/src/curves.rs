@@ -123,6 +123,9 @@ pub struct Curves {
     pub unmeasured: Vec<UnmeasuredSpeed>,
     /// Whether dubious shots count.
     pub keep_dubious: bool,
+    /// Numbers from 0 of shots that count by themselves, but in no mean: which maximum is that of their
+    /// incident or wall pulse is open to all shots of their speed.
+    pub(crate) undecided: Vec<usize>,
 }
 
 /// How times of flight change with speed between neighbouring speeds: a Hertz chain's exponent,
@@ -132,19 +135,54 @@ const EXPONENT: f64 = -0.2;
 impl Curves {
     /// Reduces shots; those without a speed or a time are left out.
     pub fn of(shots: &[Shot], grouping: &Grouping) -> Self {
-        let mut by_name: IndexMap<&str, Vec<&Shot>> = IndexMap::new();
-        for shot in shots {
-            by_name.entry(&shot.case).or_default().push(shot);
+        let mut by_name: IndexMap<&str, Vec<(usize, &Shot)>> = IndexMap::new();
+        for (number, shot) in shots.iter().enumerate() {
+            by_name.entry(&shot.case).or_default().push((number, shot));
         }
         let mut curves = Self { keep_dubious: grouping.keep_dubious, ..Self::default() };
         for (name, shots) in by_name {
-            let (case, mut unmeasured) = Case::new(name, &shots, grouping);
-            unmeasured.sort_by(|a, b| a.speed_m_s.total_cmp(&b.speed_m_s));
-            curves.unmeasured.extend(unmeasured);
-            curves.cases.extend(Some(case).filter(|case| !case.rows.is_empty()));
+            curves.add_case(name, &shots, grouping);
         }
         curves.ratios = ratios(&curves.cases, grouping);
         curves
+    }
+
+    fn add_case(&mut self, name: &str, shots: &[(usize, &Shot)], grouping: &Grouping) {
+        let gap_m_s = grouping.gap_m_s;
+        let timed = shots.iter().filter_map(|shot| Timed::new(*shot, grouping));
+        let timed: Vec<Timed<'_>> = timed.collect();
+        let untimed = shots.iter().filter(|shot| Timed::new(**shot, grouping).is_none());
+        let mut untimed: Vec<GroupSpeed> =
+            untimed.filter_map(|(_, shot)| GroupSpeed::new(shot)).collect();
+        let (mut rows, mut none) = (Vec::new(), Vec::<(GroupSpeed, usize)>::new());
+        for group in grouped(&timed, |shot| shot.group, gap_m_s) {
+            let before = untimed.len();
+            untimed.retain(|at| !group.iter().any(|shot| shot.group.is_same(at, gap_m_s)));
+            let all = group.len() + before - untimed.len();
+            let counted: Vec<Timed<'_>> =
+                group.iter().filter(|shot| shot.counts).copied().collect();
+            let resolved = resolved(&counted, grouping.keep_dubious);
+            let both = counted.iter().zip(&resolved);
+            let undecided = both.filter(|(_, resolved)| resolved.is_none());
+            self.undecided.extend(undecided.map(|(shot, _)| shot.number));
+            match row(&counted, resolved, all, grouping.keep_dubious) {
+                Some(row) => rows.push(row),
+                None => none.extend(group.first().map(|one| (one.group, all))),
+            }
+        }
+        for at in untimed {
+            match none.iter_mut().find(|(other, _)| other.is_same(&at, gap_m_s)) {
+                Some((_, shots)) => *shots += 1,
+                None => none.push((at, 1)),
+            }
+        }
+        none.sort_by(|a, b| a.0.m_s.total_cmp(&b.0.m_s));
+        self.unmeasured.extend(none.into_iter().map(|(at, shots)| UnmeasuredSpeed {
+            case: name.to_owned(),
+            speed_m_s: at.m_s,
+            shots,
+        }));
+        self.cases.extend((!rows.is_empty()).then(|| Case::new(name, rows)));
     }
 }
 
@@ -172,6 +210,7 @@ impl GroupSpeed {
 
 #[derive(Clone, Copy)]
 struct Timed<'a> {
+    number: usize,
     group: GroupSpeed,
     speed: Estimate,
     flight: &'a Flight,
@@ -179,12 +218,13 @@ struct Timed<'a> {
 }
 
 impl<'a> Timed<'a> {
-    fn new(shot: &'a Shot, grouping: &Grouping) -> Option<Self> {
+    fn new((number, shot): (usize, &'a Shot), grouping: &Grouping) -> Option<Self> {
         Some(Self {
+            number,
             group: GroupSpeed::new(shot)?,
             speed: shot.true_speed()?,
             flight: shot.flight.as_ref().ok()?,
-            counts: shot.reasons(grouping.keep_dubious).is_empty(),
+            counts: shot.own_reasons(grouping.keep_dubious).is_empty(),
         })
     }
 }
@@ -192,42 +232,10 @@ impl<'a> Timed<'a> {
 const SPEEDS_UNKNOWN: &str = "errors of speeds are not known and were taken for 0";
 
 impl Case {
-    /// The curve, and speeds at which no shot counts.
-    fn new(name: &str, shots: &[&Shot], grouping: &Grouping) -> (Self, Vec<UnmeasuredSpeed>) {
-        let gap_m_s = grouping.gap_m_s;
-        let timed = shots.iter().filter_map(|shot| Timed::new(shot, grouping));
-        let timed: Vec<Timed<'_>> = timed.collect();
-        let untimed = shots.iter().filter(|shot| Timed::new(shot, grouping).is_none());
-        let mut untimed: Vec<GroupSpeed> =
-            untimed.filter_map(|shot| GroupSpeed::new(shot)).collect();
-        let (mut rows, mut none) = (Vec::new(), Vec::<(GroupSpeed, usize)>::new());
-        for group in grouped(&timed, |shot| shot.group, gap_m_s) {
-            let before = untimed.len();
-            untimed.retain(|at| !group.iter().any(|shot| shot.group.is_same(at, gap_m_s)));
-            let of_this = before - untimed.len();
-            match row(&group, of_this, grouping.keep_dubious) {
-                Some(row) => rows.push(row),
-                None => none.extend(group.first().map(|one| (one.group, group.len() + of_this))),
-            }
-        }
-        for at in untimed {
-            match none.iter_mut().find(|(other, _)| other.is_same(&at, gap_m_s)) {
-                Some((_, shots)) => *shots += 1,
-                None => none.push((at, 1)),
-            }
-        }
+    fn new(name: &str, mut rows: Vec<SpeedRow>) -> Self {
         rows.sort_by(|a, b| a.speed_m_s.value.total_cmp(&b.speed_m_s.value));
-        let unmeasured = none.into_iter().map(|(at, shots)| UnmeasuredSpeed {
-            case: name.to_owned(),
-            speed_m_s: at.m_s,
-            shots,
-        });
-        let case = Self {
-            name: name.to_owned(),
-            laws: Laws { incident: law(&points(&rows, 0)), reflected: law(&points(&rows, 1)) },
-            rows,
-        };
-        (case, unmeasured.collect())
+        let laws = Laws { incident: law(&points(&rows, 0)), reflected: law(&points(&rows, 1)) };
+        Self { name: name.to_owned(), rows, laws }
     }
 
     /// Whether points follow a power law of this case within their errors, as
@@ -271,18 +279,26 @@ const NO_HEIGHTS: Summary = Summary {
     chi_square: f64::NAN,
 };
 
-/// Of shots of one speed, and of how many more that have no time or speed.
-fn row(group: &[Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedRow> {
-    let counted: Vec<&Timed<'_>> = group.iter().filter(|shot| shot.counts).collect();
-    let own: Vec<&Flight> = counted.iter().map(|shot| shot.flight).collect();
-    let mut resolved = match keep_dubious {
-        true => own.iter().map(|flight| Some(**flight)).collect(),
-        false => resolve_ambiguous(&own),
-    };
+/// Flights of one speed's shots as they enter its means: `None` enters none.
+fn resolved(counted: &[Timed<'_>], keep_dubious: bool) -> Vec<Option<Flight>> {
+    let own = counted.iter().map(|shot| shot.flight);
+    match keep_dubious {
+        true => own.map(|flight| Some(*flight)).collect(),
+        false => resolve_ambiguous(&own.collect::<Vec<_>>()),
+    }
+}
+
+/// Of the shots of one speed that count by themselves, of so many in `all`.
+fn row(
+    counted: &[Timed<'_>],
+    mut resolved: Vec<Option<Flight>>,
+    all: usize,
+    keep_dubious: bool,
+) -> Option<SpeedRow> {
     let has_return = |flight: &Flight| flight.reflected_s.is_some();
-    let ambiguous = own.iter().zip(&resolved).filter(|(own, now)| {
+    let ambiguous = counted.iter().zip(&resolved).filter(|(own, now)| {
         let without = now.as_ref().is_some_and(|now| !has_return(now));
-        without && has_return(own)
+        without && has_return(own.flight)
     });
     let returns_undecided = ambiguous.count();
     let now = resolved.iter().flatten();
@@ -293,7 +309,7 @@ fn row(group: &[Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedR
     }
     let pairs = counted.iter().zip(&resolved);
     let counted: Vec<Timed<'_>> = pairs
-        .filter_map(|(shot, flight)| flight.as_ref().map(|flight| Timed { flight, ..**shot }))
+        .filter_map(|(shot, flight)| flight.as_ref().map(|flight| Timed { flight, ..*shot }))
         .collect();
     let returns = counted.iter().filter(|shot| has_return(shot.flight)).count();
     let of = |value: &dyn Fn(&Flight) -> Option<Estimate>| {
@@ -319,7 +335,7 @@ fn row(group: &[Timed<'_>], untimed: usize, keep_dubious: bool) -> Option<SpeedR
         at_mean_speed_s: moved.map(|of| of.map(TimeAtSpeed::estimate)),
         correlation: reflected_s.and_then(|back| both_times(&counted, None).of_means(errors(back))),
         correlation_at_mean_speed: correlation_at_speed(&counted, speed_m_s, moved),
-        shots: (counted.len(), untimed + group.len() - counted.len()),
+        shots: (counted.len(), all - counted.len()),
         returns_undecided,
         returns_missing: counted.len() - returns - returns_undecided,
         incident_s,

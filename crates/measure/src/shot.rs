@@ -45,6 +45,9 @@ pub struct Shot {
     pub holds_several: bool,
     /// Whether the list of shots says that it does not count.
     pub excluded: bool,
+    /// Whether all shots of its speed leave open which maximum is that of its incident or wall pulse,
+    /// as [`Measurement::curves`](crate::Measurement::curves) finds.
+    pub undecided: bool,
     /// Samples about its pulses, as [`Measured::samples`].
     pub samples: [Option<Box<PulseSamples>>; 3],
 }
@@ -98,6 +101,7 @@ impl Shot {
             untriggered: record.triggered == Some(false),
             holds_several: false,
             excluded: false,
+            undecided: false,
             samples,
         }
     }
@@ -173,9 +177,15 @@ impl Shot {
         self.holds_several || self.gap_in_pulse || self.doubts.iter().any(QualityFlag::is_grave)
     }
 
-    /// Codes of the reasons why it counts in no mean, the reference's; none if it counts. Which of two
-    /// ambiguous maxima is meant is decided by all shots of a speed, and is not among them.
+    /// Codes of the reasons why it counts in no mean, the reference's; none if it counts.
     pub fn reasons(&self, keep_dubious: bool) -> Vec<&'static str> {
+        let mut codes = self.own_reasons(keep_dubious);
+        codes.extend((self.undecided && !keep_dubious).then_some("ambiguous"));
+        codes
+    }
+
+    /// Those that do not depend on the other shots of its speed.
+    pub(crate) fn own_reasons(&self, keep_dubious: bool) -> Vec<&'static str> {
         let grave = self.doubts.iter().filter(|flag| flag.is_grave() && !keep_dubious);
         let own = [
             (self.excluded, "excluded"),

@@ -6,7 +6,9 @@ use hertzchain_measure::records::{SeriesChannels, SeriesInfo, SeriesWriter, Shot
 use hertzchain_measure::signal::{
     Bandwidth, Flight, QualityFlag, SignalOptions, without_systematic,
 };
-use hertzchain_measure::{Curves, Cut, Grouping, Level, Measurement, Options, ShotList, measure};
+use hertzchain_measure::{
+    Curves, Cut, Grouping, Level, Measurement, Options, ShotList, measure, shots_csv,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -492,4 +494,36 @@ fn picks_by_hand_outside_the_record_are_refused() {
         assert!(reported.contains(part), "{reported}");
     }
     assert!(measured.shots[0].flags().contains(reported.as_str()));
+}
+
+/// A shot whose incident pulse has two equal maxima.
+fn split(seed: u64) -> Vec<i16> {
+    let bell = |at: f64, i: f64| 9000.0 * ((i - at) / 35.0).cosh().powi(-4);
+    let rest = samples(700.0, 9000.0, seed);
+    let one = |(i, sample): (usize, i16)| {
+        let i = i as f64;
+        sample + (bell(465.0, i) + bell(535.0, i) - bell(500.0, i)) as i16
+    };
+    rest.into_iter().enumerate().map(one).collect()
+}
+
+#[test]
+fn a_shot_that_the_mean_of_its_speed_leaves_out_is_reported_as_not_counted() {
+    let path = folder("undecided").join("series.h5");
+    let mut writer = SeriesWriter::create(&path, &info("dry", &[])).unwrap();
+    (0..4).for_each(|shot| push(&mut writer, shot, 0.5, &samples(700.0, 9000.0, shot)));
+    push(&mut writer, 4, 0.5, &split(4));
+    writer.finish().unwrap();
+    let mut measured = measure(&[path], &Options::default(), &());
+    let curves = measured.curves(&Grouping::default());
+    assert_eq!(curves.cases[0].rows[0].shots, (4, 1));
+    let last = &measured.shots[4];
+    assert_eq!(last.reasons(false), ["ambiguous"], "{}", last.flags());
+    let table = shots_csv(&measured.shots, &curves);
+    assert_eq!(table.matches(",yes,").count(), 4, "{table}");
+    assert_eq!(table.matches(",no,ambiguous,").count(), 1, "{table}");
+    let keep = Grouping { keep_dubious: true, ..Grouping::default() };
+    let curves = measured.curves(&keep);
+    assert_eq!(curves.cases[0].rows[0].shots, (5, 0));
+    assert_eq!(shots_csv(&measured.shots, &curves).matches(",yes,").count(), 5);
 }

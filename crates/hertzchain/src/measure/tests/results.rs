@@ -38,6 +38,7 @@ fn measured(shots: usize) -> Measurement {
         gap_in_pulse: false,
         holds_several: false,
         excluded: false,
+        undecided: false,
         samples: [const { None }; 3],
     };
     Measurement {

@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         false => print::print(&summary::text(&measured, &curves, &arguments.reference))?,
     }
     if let Some(path) = &arguments.report {
-        report::write(path, &measured)?;
+        report::write(path, &measured, &curves)?;
     }
     if let Some(folder) = folder {
         write(folder, &measured, (&curves, &arguments.reference))?;

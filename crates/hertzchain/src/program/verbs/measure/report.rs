@@ -4,7 +4,7 @@ use super::pictures;
 use crate::program::Failure;
 use hertzchain_figures::Figure;
 use hertzchain_measure::records::{without_controls, write_whole};
-use hertzchain_measure::{Example, Measurement, Shot};
+use hertzchain_measure::{Curves, Example, Measurement, Shot};
 use std::path::Path;
 
 pub(super) const MOST: usize = 500;
@@ -14,13 +14,13 @@ const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\">\
 img{width:100%}h2{font-size:1em;margin-top:2em}</style>\n";
 
 /// Writes the page: one HTML file, without anything beside it.
-pub(super) fn write(path: &Path, measured: &Measurement) -> Result<(), Failure> {
-    let page = page(measured);
+pub(super) fn write(path: &Path, measured: &Measurement, curves: &Curves) -> Result<(), Failure> {
+    let page = page(measured, curves.keep_dubious);
     write_whole(path, |out| out.write_all(page.as_bytes()))
         .map_err(|error| Failure::User(format!("cannot write {}: {error}", path.display())))
 }
 
-fn page(measured: &Measurement) -> String {
+fn page(measured: &Measurement, keep_dubious: bool) -> String {
     let flagged = measured.shots.iter().filter(|shot| !shot.flags().is_empty()).count();
     let (shown, all) = (measured.flagged.len(), measured.shots.len());
     let mut page = format!("{HEAD}<h1>{flagged} of {all} shots are flagged</h1>\n");
@@ -30,13 +30,13 @@ fn page(measured: &Measurement) -> String {
     for refused in &measured.refused {
         page += &format!("<p>refused: {}</p>\n", escaped(&refused.to_string()));
     }
-    measured.flagged.iter().for_each(|example| page += &section(example));
+    measured.flagged.iter().for_each(|example| page += &section(example, keep_dubious));
     page + "</html>\n"
 }
 
-fn section(example: &Example) -> String {
+fn section(example: &Example, keep_dubious: bool) -> String {
     let Shot { source, .. } = &example.shot;
-    let counted = match example.shot.reasons(false) {
+    let counted = match example.shot.reasons(keep_dubious) {
         none if none.is_empty() => "counts".to_owned(),
         codes => format!("does not count: {}", codes.join(", ")),
     };
