@@ -1,9 +1,10 @@
 //! Campaigns on a virtual rig.
 
 use crate::failure::Failure;
+use crate::inference::warnings;
 use crate::options::CampaignOptions;
 use crate::sweep;
-use hertzchain_experiment::Experiment;
+use hertzchain_experiment::{Experiment, Warning};
 use hertzchain_sim::rig::{self, Done, Plan, Progress};
 
 /// A campaign that is ready to run.
@@ -20,7 +21,8 @@ pub struct PreparedCampaign<'a> {
     options: &'a CampaignOptions,
     /// Series, and the seed of all that is random.
     pub plan: Plan,
-    /// Records that will end before the wave is back, and rates of few samples a pulse.
+    /// What is improbable about the experiment, records that will end before the wave is back, and rates
+    /// of few samples a pulse.
     pub warnings: Vec<String>,
 }
 
@@ -31,8 +33,9 @@ impl<'a> PreparedCampaign<'a> {
     /// An experiment that no rig can do.
     pub fn new(experiment: &Experiment, options: &'a CampaignOptions) -> Result<Self, Failure> {
         let plan = Plan::new(experiment, options.seed)?;
-        let warnings = rig::forecast(&plan)?;
-        Ok(Self { options, plan, warnings })
+        let improbable = warnings([experiment]);
+        let lines = improbable.iter().map(Warning::one_line).chain(rig::forecast(&plan)?);
+        Ok(Self { options, warnings: lines.collect(), plan })
     }
 
     /// Runs the series that the folder does not have yet, and calls `watch` after every shot.

@@ -2,7 +2,7 @@
 
 use crate::csv::{Table, columns, list, table, view};
 use crate::failure::Failure;
-use crate::inference::{self, is_meant, references_json, user};
+use crate::inference::{self, is_meant, references_json, user, warnings_json};
 use crate::options::DesignOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
@@ -226,6 +226,7 @@ pub fn json(problem: &CurveProblem, run_design: &DesignResult) -> Value {
     };
     json!({
         "references": references_json(problem.model()),
+        "warnings": warnings_json([&problem.model().experiment]),
         "follows_data": !run_design.goodness.is_rejected(),
         "parameters": run_design.names,
         "units": run_design.units,

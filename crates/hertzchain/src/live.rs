@@ -49,7 +49,7 @@ impl LiveMeasurement {
         Ok(Self {
             folder: folder.to_owned(),
             arguments: arguments.clone(),
-            options: measure::options(arguments)?,
+            options: measure::options(arguments, measure::rig(arguments)?.as_ref())?,
             list: arguments.shots.as_deref().and_then(stamp),
             seen: BTreeMap::new(),
             measured: BTreeMap::new(),

@@ -39,6 +39,7 @@ pub fn measure_records(
     records: Vec<Record>,
     options: &MeasureOptions,
 ) -> Result<MeasureResult, Failure> {
-    let shots = hertzchain_measure::measure_records(records, &measure::options(options)?, &());
+    let how = measure::options(options, measure::rig(options)?.as_ref())?;
+    let shots = hertzchain_measure::measure_records(records, &how, &());
     MeasureResult::new(shots, options)
 }

@@ -16,6 +16,7 @@ mod fit_mistakes;
 mod fit_models;
 mod fit_options;
 mod gauge;
+mod improbable;
 mod joint;
 mod legends;
 mod limits;

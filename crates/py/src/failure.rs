@@ -6,6 +6,7 @@ use hertzchain_measure::records::without_controls as plain;
 use miette::Diagnostic;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::ffi::CString;
 
 /// Where the exceptions are declared.
 const ERRORS: &str = "hertzchain.errors";
@@ -44,6 +45,16 @@ fn raised<'py>(py: Python<'py>, failure: &Failure) -> PyResult<Bound<'py, PyAny>
 fn findings<'py>(py: Python<'py>, mistakes: &Mistakes) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let all = mistakes.findings().iter();
     all.map(|found| finding(py, found)).collect()
+}
+
+/// Warns of what is improbable about an experiment, a line each, in the caller of the function that
+/// calls the extension.
+pub(crate) fn warn<'a>(py: Python<'_>, lines: impl Iterator<Item = &'a str>) -> PyResult<()> {
+    let class = py.import(ERRORS)?.getattr("ExperimentWarning")?;
+    for line in lines {
+        PyErr::warn(py, &class, &CString::new(plain(line).as_bytes())?, 2)?;
+    }
+    Ok(())
 }
 
 /// What, where, what was expected.

@@ -1,7 +1,7 @@
 //! From times of flight to contacts.
 
 use crate::experiment::Experiment;
-use crate::failure::PyFailure;
+use crate::failure::{PyFailure, warn};
 use crate::job::Job;
 use crate::json;
 use crate::options::parsed;
@@ -17,6 +17,7 @@ use hertzchain_infer::{CurveProblem, Data};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// A table by name and text.
@@ -109,8 +110,8 @@ pub(crate) fn posed(
 
 /// A fit as Python gets it.
 pub(crate) struct Found {
-    fit: serde_json::Value,
-    rows: serde_json::Value,
+    fit: Value,
+    rows: Value,
     samples: Option<(usize, Vec<f64>)>,
 }
 
@@ -126,7 +127,7 @@ impl Found {
 
     /// As a dict.
     pub(crate) fn reported(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        let reported = json::object(py, &self.fit)?.cast_into::<PyDict>()?;
+        let reported = reported(py, &self.fit)?.cast_into::<PyDict>()?;
         reported.set_item("rows", json::object(py, &self.rows)?)?;
         if let Some((parameters, samples)) = self.samples {
             let samples = samples.into_pyarray(py);
@@ -135,6 +136,13 @@ impl Found {
         }
         Ok(reported.into_any())
     }
+}
+
+/// A result as Python's own objects, after warnings about its models.
+fn reported<'py>(py: Python<'py>, found: &Value) -> PyResult<Bound<'py, PyAny>> {
+    let warnings = found["warnings"].as_array().into_iter().flatten();
+    warn(py, warnings.filter_map(Value::as_str))?;
+    json::object(py, found)
 }
 
 /// Samples of a posterior, parameter by parameter, and how many parameters there are.
@@ -165,7 +173,7 @@ pub(crate) fn design<'py>(
         let (problem, found) = designing::design(&data, &experiment.inner, &arguments)?;
         Ok(designing::json(&problem, &found))
     })?;
-    json::object(py, &found)
+    reported(py, &found)
 }
 
 /// Which oil is on the contacts.
@@ -195,5 +203,5 @@ pub(crate) fn gauge<'py>(
             reported["options"] = hertzchain::options::recorded(&arguments);
             Ok(reported)
         })?;
-    json::object(py, &found)
+    reported(py, &found)
 }

@@ -1,13 +1,15 @@
 //! Recordings: made on a virtual rig, and measured.
 
 use crate::experiment::Experiment;
-use crate::failure::PyFailure;
+use crate::failure::{PyFailure, warn};
 use crate::job::Job;
 use crate::json;
 use crate::options::parsed;
 use hertzchain::campaign::PreparedCampaign;
+use hertzchain::inference::warnings;
 use hertzchain::measure::{self as measuring, MeasureResult};
 use hertzchain::options::{CampaignOptions, MeasureOptions as Measure};
+use hertzchain_experiment::Warning;
 use hertzchain_measure::{Watch, laws_csv, ratios_csv, shots_csv, speeds_csv};
 use hertzchain_sim::rig::Progress;
 use hertzchain_sim::{Stop, stopped};
@@ -75,9 +77,12 @@ pub(crate) fn measure<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Measure = parsed("measure", options)?;
+    let rig = measuring::rig(&arguments)?;
+    let lines: Vec<String> = warnings(&rig).iter().map(Warning::one_line).collect();
+    warn(py, lines.iter().map(String::as_str))?;
     // A single recording may have millions of samples.
     let (found, tables) = Job::pooled(progress, threads).run_apart(py, move |stop| {
-        let how = measuring::options(&arguments)?;
+        let how = measuring::options(&arguments, rig.as_ref())?;
         let watch = Counted(stop);
         let found = measuring::measure_watched(&records, &arguments, &how, &watch)?;
         let MeasureResult { shots: measured, curves } = found;

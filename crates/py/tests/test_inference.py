@@ -77,6 +77,13 @@ def test_a_model_that_is_not_named_is_stated(dry_data):
     assert hc.fit(dry_data, "dry", free=["eta"]).details["assumed_model"] is None
 
 
+def test_what_is_improbable_about_a_model_is_a_warning(dry_data):
+    for call in (hc.fit, hc.design):
+        with pytest.warns(hc.ExperimentWarning, match="Poisson ratio of `aisi316` is 0.7") as warned:
+            call(dry_data, "dry", free="eta", fixed={"nu": 0.7})
+        assert warned[0].filename == __file__
+
+
 def test_tables_of_pandas_and_sweeps_are_data(dry_data):
     import pandas as pd
 

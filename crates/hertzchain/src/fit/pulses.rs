@@ -211,6 +211,7 @@ pub fn json(fit_result: &Pulsed, arguments: &Arguments) -> Value {
         "kept": inference::unit_changes(&fit_result.problem.model, &arguments.modelled.set),
         "held_loads": inference::held_loads(&fit_result.problem.model),
         "references": inference::references_json(&fit_result.problem.model),
+        "warnings": inference::warnings_json([&fit_result.problem.model.experiment]),
         "filters": fit_result.filters(),
         "unasked": fit_result.unasked(arguments),
         "residuals": fit_result.problem.residual_count(),

@@ -3,7 +3,9 @@
 use super::alternatives::{AlternativeModel, AlternativeModels, Unfitted};
 use super::more::{Curves, More};
 use super::{FitResult, Inferred, Limit, TableFit};
-use crate::inference::{assumed, held_loads, references_json, unit_changes, widened};
+use crate::inference::{
+    assumed, held_loads, references_json, unit_changes, warnings_json, widened,
+};
 use crate::options::FitOptions as Arguments;
 use hertzchain_infer::{Advice, End, Observable, Parameter, Profile, Prospect};
 use serde_json::{Value, json};
@@ -19,6 +21,7 @@ pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
         "kept": unit_changes(fit_result.problem.model(), &arguments.modelled.set),
         "held_loads": held_loads(fit_result.problem.model()),
         "references": references_json(fit_result.problem.model()),
+        "warnings": warnings_json(fit_result.problem.curves.iter().map(|it| &it.model.experiment)),
         "widened": widened(data),
         "instruction_set": fit_result.problem.model().set.name(),
         "fingerprint": fit_result.problem.fingerprint().to_string(),

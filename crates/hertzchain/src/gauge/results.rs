@@ -1,7 +1,7 @@
 //! What the gauge says as JSON, in SI.
 
 use super::GaugeResult;
-use crate::inference::references_json;
+use crate::inference::{references_json, warnings_json};
 use hertzchain_infer::gauge::{LEAST_PROBABILITY, Pair, WetRow, is_determined};
 use hertzchain_infer::{Covariance, CurveProblem, Fit, Identifiability, Problem};
 use hertzchain_measure::signal::ChiSquare;
@@ -19,6 +19,7 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
         })).collect::<Value>(),
         "dry_chi_square": gauge.dry_fit.chi_square(),
         "references": references_json(&gauge.wet),
+        "warnings": warnings_json([&gauge.wet.experiment, &gauge.dry.model().experiment]),
         "contacts": run_gauge.rows.iter().map(|of| row(of, run_gauge)).collect::<Value>(),
         "film": run_gauge.film.as_ref().map(film),
         "to_add": gauge.to_add(),

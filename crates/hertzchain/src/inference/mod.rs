@@ -3,13 +3,13 @@
 mod known;
 mod reference;
 mod unit_changes;
+mod warnings;
 
-pub use self::{
-    reference::references,
-    unit_changes::{held_loads, unit_changes},
-};
+pub use self::{reference::references, warnings::warnings};
 pub(crate) use known::{is_meant, systematic};
 pub(crate) use reference::references_json;
+pub(crate) use unit_changes::{held_loads, unit_changes};
+pub(crate) use warnings::warnings_json;
 
 use crate::failure::{Failure, unread};
 use crate::input;

@@ -8,7 +8,7 @@ use hertzchain_infer::{FreeNumber, Model};
 
 /// What it means that a number on which a unit depends, such as the n of F = k δ^n,
 /// is free or set, one sentence for each number in that unit.
-pub fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
+pub(crate) fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
     let experiment = &model.experiment;
     let free = model.numbers.iter().map(|n| n.name());
     let free = paths(experiment, free);
@@ -33,7 +33,7 @@ pub fn unit_changes(model: &Model, sets: &[Assignment]) -> Vec<String> {
 
 /// That friction holds other loads on a pushed row than the model's equilibrium has, and how much
 /// they may differ; nothing where the push is free.
-pub fn held_loads(model: &Model) -> Option<String> {
+pub(crate) fn held_loads(model: &Model) -> Option<String> {
     let experiment = &model.experiment;
     let (chain, _) = experiment.chain(None).ok()?;
     let mass_kg: f64 = chain.beads.iter().map(|bead| bead.mass_kg).sum();

@@ -45,8 +45,7 @@ const FIT_WIDTHS: f64 = 2.0;
 /// A folder without recordings; a pipe that can't be read.
 pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Vec<Note>), Failure> {
     let (mut files, mut notes) = (Vec::new(), Vec::new());
-    let list = list.and_then(|list| list.canonicalize().ok());
-    let is_list = |file: &PathBuf| list.is_some() && file.canonicalize().ok() == list;
+    let is_list = is_list(list);
     for path in given {
         if !path.is_dir() {
             // One that is not there is refused as a record, beside the others.
@@ -66,7 +65,13 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Ve
 }
 
 /// What a folder has beside recordings; an instrument's binary file with how it is exported.
-type Others = Vec<(PathBuf, Option<String>)>;
+pub(crate) type Others = Vec<(PathBuf, Option<String>)>;
+
+/// Whether a file is the table of shots, by whatever path.
+pub(crate) fn is_list(list: Option<&Path>) -> impl Fn(&PathBuf) -> bool + use<> {
+    let list = list.and_then(|list| list.canonicalize().ok());
+    move |file| list.is_some() && file.canonicalize().ok() == list
+}
 
 /// Recordings in a folder, and what else is there, in order of their names.
 pub(crate) fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Others), Failure> {
@@ -120,7 +125,7 @@ const MOST_NAMES: usize = 8;
 
 /// Notes on what a folder has beside recordings, but for hidden files without an extension: one a kind
 /// of instruments' binary files, and one on the others.
-fn passed_over(folder: &Path, others: Others) -> Vec<Note> {
+pub(crate) fn passed_over(folder: &Path, others: Others) -> Vec<Note> {
     let exports = to_export(&others).into_iter().map(|(text, files)| Note { text, files });
     let name = |path: &PathBuf| {
         let name = path.file_name()?.to_str()?;
@@ -183,7 +188,7 @@ impl MeasureResult {
 /// # Errors
 /// Files and options that can't be used.
 pub fn measure(records: &[PathBuf], options: &Arguments) -> Result<MeasureResult, Failure> {
-    measure_watched(records, options, &self::options(options)?, &())
+    measure_watched(records, options, &self::options(options, rig(options)?.as_ref())?, &())
 }
 
 /// The same as `how` says, watched on the way.
@@ -206,9 +211,8 @@ pub fn measure_watched(
 /// How recordings are read and measured.
 ///
 /// # Errors
-/// Options that do not go together; a rig or a table of shots that can't be used.
-pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
-    let rig = arguments.rig.as_deref().map(open_rig).transpose()?;
+/// Options that do not go together; a table of shots that can't be used.
+pub fn options(arguments: &Arguments, rig: Option<&Experiment>) -> Result<Options, Failure> {
     let reading = &arguments.reading;
     if reading.channel.len() > 2 {
         return Err(Failure::User(
@@ -217,7 +221,7 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
                 .to_owned(),
         ));
     }
-    let high_pass_hz = ac_coupling_hz(&arguments.picking, rig.as_ref());
+    let high_pass_hz = ac_coupling_hz(&arguments.picking, rig);
     Ok(Options {
         keep_droop: high_pass_hz == Some(0.0),
         keep_low_pass: arguments.picking.low_pass == Some(Corner(0.0)),
@@ -240,17 +244,24 @@ pub fn options(arguments: &Arguments) -> Result<Options, Failure> {
             (None, true) => Cut::Never,
             (None, false) => Cut::Plain,
         },
-        measuring: measuring(&arguments.picking, rig.as_ref(), high_pass_hz)?,
+        measuring: measuring(&arguments.picking, rig, high_pass_hz)?,
         most_flagged: 0,
         list: arguments.shots.as_deref().map(list).transpose()?,
         speed_error_m_s: arguments
             .speed_error
             .map(|error| error.0)
-            .or_else(|| Some(rig.as_ref()?.campaign().photogate.error_m_s)),
+            .or_else(|| Some(rig?.campaign().photogate.error_m_s)),
     })
 }
 
-/// The rig's file, or a preset by its name.
+/// Returns the rig that an option names: its file, or a preset by its name.
+///
+/// # Errors
+/// A rig that can't be used.
+pub fn rig(arguments: &Arguments) -> Result<Option<Experiment>, Failure> {
+    arguments.rig.as_deref().map(open_rig).transpose()
+}
+
 fn open_rig(file: &Path) -> Result<Experiment, Failure> {
     let preset = file.to_str().filter(|_| !file.exists());
     let preset = preset.filter(|name| hertzchain_experiment::preset(name).is_ok());

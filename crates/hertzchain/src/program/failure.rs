@@ -3,12 +3,12 @@
 
 use crate::failure;
 pub(crate) use crate::failure::{Failure, why};
-use crate::inference::{assumed, held_loads, unit_changes};
+use crate::inference::{assumed, held_loads, unit_changes, warnings};
 use crate::input::option;
 use crate::options::Given;
 use crate::options::{Assignment, CurveOptions as Measured};
 use crate::program::print::warn;
-use hertzchain_experiment::Warning;
+use hertzchain_experiment::{Experiment, Warning};
 use hertzchain_infer::{Data, Model};
 use hertzchain_measure::records::without_controls;
 use std::borrow::Cow;
@@ -47,9 +47,19 @@ pub(crate) fn print_assumed(data: &Data, measured: &Measured) {
     warn(assumed(data, measured));
 }
 
-/// Numbers that are kept while their unit changes, and loads that the model does not have.
-pub(crate) fn print_stored(model: &Model, sets: &[Assignment]) {
-    warn(unit_changes(model, sets).into_iter().chain(held_loads(model)));
+/// Numbers that are kept while their unit changes, loads that the models do not have, and what is
+/// improbable about these.
+pub(crate) fn print_stored<'a>(models: impl IntoIterator<Item = &'a Model>, sets: &[Assignment]) {
+    let models: Vec<&Model> = models.into_iter().collect();
+    for model in &models {
+        warn(unit_changes(model, sets).into_iter().chain(held_loads(model)));
+    }
+    print_improbable(models.into_iter().map(|model| &model.experiment));
+}
+
+/// What is improbable about experiments that a verb loads, each once.
+pub(crate) fn print_improbable<'a>(experiments: impl IntoIterator<Item = &'a Experiment>) {
+    print_speed_warnings(None, &warnings(experiments));
 }
 
 /// What is odd about an experiment at the speed that may have been given.

@@ -25,8 +25,9 @@ pub(crate) fn theory(arguments: &Arguments) -> Result<(), Failure> {
     let found = describe::theory(&experiment, arguments)?;
     let assumed = input::assumed(&arguments.input);
     if arguments.json {
-        // A list of groups has no place for it.
+        // A list of groups has no place for these.
         print::warn(assumed);
+        failure::print_speed_warnings(arguments.speed.as_ref(), &found.warnings);
         return print::print_json(&json!(found.groups));
     }
     failure::print_speed_warnings(arguments.speed.as_ref(), &found.warnings);

@@ -19,7 +19,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = inference::experiment(&arguments.modelled, Some(&data.case))?;
     let model = inference::model(&experiment, &arguments.modelled, &arguments.freed)?;
     print_assumed(&data, &arguments.measured);
-    print_stored(&model, &arguments.modelled.set);
+    print_stored([&model], &arguments.modelled.set);
     let problem = inference::problem(model, data, &arguments.freed)?;
     let targets = design::targets(&problem, arguments)?;
     let folder = Folder::asked(arguments.out.as_deref())?;

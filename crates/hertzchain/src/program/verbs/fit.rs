@@ -21,8 +21,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let problem = inference::posed(&pairs(table, arguments)?, arguments)?;
     for curve in &problem.curves {
         print_assumed(&curve.data, &arguments.measured);
-        print_stored(&curve.model, &arguments.modelled.set);
     }
+    let models = problem.curves.iter().map(|curve| &curve.model);
+    print_stored(models, &arguments.modelled.set);
     pace(&problem, arguments);
     let folder = Folder::asked(arguments.out.as_deref())?;
     let fit_result =

@@ -6,7 +6,7 @@ mod report;
 use crate::gauge::{self, GaugeResult};
 use crate::inference;
 use crate::options::GaugeOptions as Arguments;
-use crate::program::{Failure, Folder, print, print_assumed, with_notes};
+use crate::program::{Failure, Folder, failure, print, print_assumed, with_notes};
 use std::path::Path;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -19,6 +19,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let oils = gauge::all_oils(arguments.oils.as_deref())?;
     let [wet_model, dry_model] = gauge::models(arguments, [&wet.case, &dry.case])?;
+    failure::print_improbable([&wet_model, &dry_model]);
     let assumed = gauge::assumed_models(
         arguments.model.is_some() || arguments.preset.is_some(),
         arguments.dry_model.is_some() || arguments.dry_preset.is_some(),

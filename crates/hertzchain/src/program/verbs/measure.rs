@@ -6,7 +6,7 @@ pub(super) mod summary;
 
 use crate::measure::{self, MeasureResult};
 use crate::options::MeasureOptions as Arguments;
-use crate::program::{Counter, Failure, Folder, print};
+use crate::program::{Counter, Failure, Folder, failure, print};
 use hertzchain_measure::signal::Bandwidth;
 use hertzchain_measure::{
     Curves, Measurement, Note, Options, laws_csv, ratios_csv, speeds_csv, write_shots,
@@ -14,7 +14,9 @@ use hertzchain_measure::{
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let most_flagged = if arguments.report.is_some() { report::MOST } else { 0 };
-    let options = Options { most_flagged, ..measure::options(arguments)? };
+    let rig = measure::rig(arguments)?;
+    failure::print_improbable(&rig);
+    let options = Options { most_flagged, ..measure::options(arguments, rig.as_ref())? };
     let folder = Folder::asked(arguments.out.as_deref())?;
     let counter = Counter::new("records", 0);
     let found = measure::measure_watched(&arguments.records, arguments, &options, &counter);

@@ -14,7 +14,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = recorded(arguments)?;
     let folder = Folder::asked(arguments.out.as_deref())?;
     let fit_result = with_notes(arguments.modelled.threads, || fit_result(recorded, arguments))?;
-    print_stored(&fit_result.problem.model, &arguments.modelled.set);
+    print_stored([&fit_result.problem.model], &arguments.modelled.set);
     let mut all = json(&fit_result, arguments);
     let assumed = inference::assumed_model(&arguments.modelled);
     print::result(arguments.json, &mut all, assumed, || text(&fit_result, arguments))?;

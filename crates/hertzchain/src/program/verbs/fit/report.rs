@@ -40,16 +40,22 @@ fn title(table: &TableFit<'_>, of_several: bool) -> String {
         "" => String::new(),
         case => format!(", {case}"),
     };
+    let mut distinct = data.speeds_m_s();
+    distinct.sort_by(f64::total_cmp);
+    distinct.dedup();
+    let speeds = match distinct.len() {
+        1 => "1 speed".to_owned(),
+        speeds => format!("{speeds} speeds"),
+    };
     let share = match of_several {
         true => format!(", χ² = {}", digits(table.chi_square(), 4)),
         false => String::new(),
     };
     format!(
-        "{}\n{}{case}: {} values at {} speeds{share}\n",
+        "{}\n{}{case}: {} values at {speeds}{share}\n",
         heading(table.curve.model.experiment.title()),
         data.file,
         data.value_count(),
-        data.rows.len()
     )
 }
 
