@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::measure::{self, MeasureResult};
 use crate::options::MeasureOptions;
-use hertzchain_measure::{Measurement, Options, ShotList};
+use hertzchain_measure::{Measurement, Note, Options, ShotList};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -36,6 +36,8 @@ pub struct LiveMeasurement {
     list: Option<Stamp>,
     seen: BTreeMap<PathBuf, Stamp>,
     measured: BTreeMap<PathBuf, (Stamp, Measurement)>,
+    /// What the folder has beside recordings.
+    note: Option<Note>,
     /// Why the table of shots that is there now was not read, if so; the one before still holds.
     pub list_error: Option<String>,
 }
@@ -53,6 +55,7 @@ impl LiveMeasurement {
             list: arguments.shots.as_deref().and_then(stamp),
             seen: BTreeMap::new(),
             measured: BTreeMap::new(),
+            note: None,
             list_error: None,
         })
     }
@@ -63,11 +66,13 @@ impl LiveMeasurement {
     /// A folder that can't be read.
     pub fn update(&mut self) -> Result<Vec<PathBuf>, Failure> {
         self.update_list();
-        let (files, _) = measure::recordings(&self.folder)?;
-        let is_list = |file: &PathBuf| self.arguments.shots.as_ref() == Some(file);
+        let (files, mut others) = measure::recordings(&self.folder)?;
+        let is_list = measure::is_list(self.arguments.shots.as_deref());
         let stamped = files.into_iter().filter(|file| !is_list(file));
         let found: BTreeMap<PathBuf, Stamp> =
             stamped.filter_map(|file| Some((file.clone(), stamp(&file)?))).collect();
+        others.retain(|other| !is_list(other));
+        self.note = measure::passed_over(&self.folder, &others);
         self.measured.retain(|file, _| found.contains_key(file));
         let is_measured = |file: &PathBuf, stamp: &Stamp| {
             self.measured.get(file).is_some_and(|(measured, _)| measured == stamp)
@@ -98,10 +103,9 @@ impl LiveMeasurement {
     /// Returns all shots so far, in the order of their files' names, and their curves: what
     /// [`measure`](crate::measure()) returns for the folder.
     pub fn result(&self) -> MeasureResult {
-        let mut shots = Measurement::default();
-        for (_, of_file) in self.measured.values() {
-            shots.append(of_file.clone());
-        }
+        let files = self.measured.iter().map(|(file, (_, measured))| (file, measured));
+        let mut shots = Measurement::of_files(files, self.options.list.as_ref());
+        shots.notes.splice(0..0, self.note.clone());
         let curves = shots.curves(&measure::grouping(&self.arguments));
         MeasureResult { shots, curves }
     }

@@ -74,6 +74,10 @@ fn assert_same_tables(live: &Path, measured: &Path) {
 #[test]
 fn a_folder_that_fills_gives_the_tables_of_measure_also_after_a_kill() {
     let (all, shots, list) = setup("live-folder");
+    // What is no recording, and a line about a file that never comes, are in the tables too.
+    fs::write(shots.join("sketch.pdf"), "").unwrap();
+    let mut lines = fs::OpenOptions::new().append(true).open(&list).unwrap();
+    writeln!(lines, "absent.csv,dry,0.3,0.001").unwrap();
     let (into, out, measured) = (shots.to_str().unwrap(), all.join("live"), all.join("measured"));
     let arguments = [into, "--shots", &list, "--out", out.to_str().unwrap(), "--stop-after", STOP];
     let mut live = Live::start(&arguments);
@@ -97,6 +101,9 @@ fn a_folder_that_fills_gives_the_tables_of_measure_also_after_a_kill() {
     let whole = run(&["measure", into, "--shots", &list, "--out", measured.to_str().unwrap()]);
     assert!(whole.status.success());
     assert_same_tables(&out, &measured);
+    let found = fs::read_to_string(out.join("measured.json")).unwrap();
+    assert!(found.contains("absent.csv is none of the files given"), "{found}");
+    assert!(found.contains("sketch.pdf"), "{found}");
 }
 
 /// Both sensors' sum in counts, with quiet before and after each shot.
@@ -145,8 +152,12 @@ fn what_to_measure_next_follows_each_shot() {
     for number in 0..3 {
         record(&shots, Path::new(&list), number);
         let line = live.line();
-        let next = line["next"].as_str();
-        assert!(next.is_some_and(|next| next.contains("m/s")), "{line}");
+        assert_eq!(line["mean"]["shots"], 1, "the shot is there before: {line}");
+        assert_eq!(line["next"], Value::Null);
+        let proposed = live.line();
+        assert_eq!(proposed["shot"]["file"], line["shot"]["file"]);
+        let next = proposed["next"].as_str();
+        assert!(next.is_some_and(|next| next.contains("m/s")), "{proposed}");
     }
     assert_eq!(live.rest(), (0, true));
 }

@@ -245,8 +245,22 @@ pub(crate) fn stated_bandwidth(record: &Record, options: &Options) -> Option<Ban
 }
 
 impl Measurement {
-    /// Appends shots, refusals and notes of further recordings.
-    pub fn append(&mut self, other: Self) {
+    /// Joins what came of each of these files, as [`measure`] returns it of all of them; examples are
+    /// left out.
+    pub fn of_files<'a>(
+        files: impl IntoIterator<Item = (&'a PathBuf, &'a Self)>,
+        list: Option<&ShotList>,
+    ) -> Self {
+        let (mut all, mut names) = (Self::default(), Vec::new());
+        for (file, of_file) in files {
+            all.append(of_file.clone());
+            names.push(file.clone());
+        }
+        all.unmatched = list.map_or(Vec::new(), |list| list.unmatched(&names, &all.shots));
+        all
+    }
+
+    fn append(&mut self, other: Self) {
         self.shots.extend(other.shots);
         self.samples_held += other.samples_held;
         self.refused.extend(other.refused);

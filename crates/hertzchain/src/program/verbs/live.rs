@@ -1,14 +1,13 @@
 //! `hertzchain live`: shots measured as they are recorded.
 
+mod next;
+
+use self::next::Proposals;
 use super::measure::{summary, tables};
 use crate::live::LiveMeasurement;
 use crate::measure::{self, MeasureResult};
-use crate::options::{
-    DesignOptions, LiveOptions, MeasureOptions, ModelOptions, ParameterOptions, ReadingOptions,
-    RowsAre,
-};
-use crate::program::{Failure, Folder, format, print};
-use crate::{design, inference};
+use crate::options::{LiveOptions, MeasureOptions, ReadingOptions, RowsAre};
+use crate::program::{Failure, Folder, failure, format, print};
 use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy};
 use hertzchain_measure::{Case, Level, MeasureError, Shot, SpeedRow, shots_at_level};
 use serde_json::{Value, json};
@@ -25,10 +24,12 @@ const LOOK: Duration = Duration::from_millis(100);
 pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
     let Source { folder, measured, recording } = Source::open(arguments)?;
     let mut live = LiveMeasurement::new(&folder, &measured)?;
+    failure::print_improbable(&measure::rig(&measured)?);
     if let Some(out) = &measured.out {
         Folder::open(out)?;
     }
     print::note(&format!("measuring what comes into {}; Ctrl-C ends", folder.display()));
+    let proposals = Proposals::start(arguments)?;
     let (mut last, mut list_error) = (Instant::now(), None);
     loop {
         // Asked before the look, which then sees what the stream has brought last.
@@ -39,8 +40,9 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
             print::warn(&list_error);
         }
         if !files.is_empty() {
+            report(&measured, &live, &files, proposals.as_ref())?;
+            // Measuring many files is no silence.
             last = Instant::now();
-            report(arguments, &measured, &live, &files)?;
         }
         let stop = arguments.stop_after.map(|time| Duration::from_secs_f64(time.0));
         if stop.is_some_and(|stop| last.elapsed() > stop) || (ended && live.is_complete()) {
@@ -49,6 +51,7 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
         sleep(LOOK);
     }
     ended_well(recording)?;
+    proposals.map_or(Ok(()), Proposals::finish)?;
     let MeasureResult { shots, curves } = live.result();
     if !measured.json {
         print::print(&summary::text(&shots, &curves, &measured.reference))?;
@@ -164,15 +167,15 @@ fn wrong(text: &str) -> Failure {
     Failure::User(text.to_owned())
 }
 
-/// Prints the shots of new files, each with what it does to the mean and the power law, and what to
-/// measure next; writes the tables anew.
+/// Prints the shots of new files, each with what it does to the mean and the power law; writes the
+/// tables anew; asks what to measure after the last of them.
 fn report(
-    arguments: &LiveOptions,
     measured: &MeasureOptions,
     live: &LiveMeasurement,
     files: &[PathBuf],
+    proposals: Option<&Proposals>,
 ) -> Result<(), Failure> {
-    let result = &live.result();
+    let result = live.result();
     if let Some(out) = &measured.out {
         let mut folder = Folder::open(out)?;
         tables(&mut folder, &result.shots, &result.curves)?;
@@ -182,14 +185,16 @@ fn report(
     refused.for_each(|refused| print::note(&format!("refused: {refused}")));
     let new: Vec<&Shot> =
         result.shots.shots.iter().filter(|shot| files.contains(&shot.file)).collect();
-    let next = new.last().and_then(|shot| next(arguments, result, &shot.case));
-    for (at, shot) in new.iter().enumerate() {
-        let next = next.as_ref().filter(|_| at + 1 == new.len());
-        let place = place(result, shot);
+    let keep_dubious = result.curves.keep_dubious;
+    for shot in &new {
+        let place = place(&result, shot);
         match measured.json {
-            true => print::print(&line_json(shot, place, next).to_string())?,
-            false => print::print(&line_text(shot, place, next))?,
+            true => print::print(&line_json(shot, place, keep_dubious).to_string())?,
+            false => print::print(&line_text(shot, place, keep_dubious))?,
         }
+    }
+    if let (Some(proposals), Some(last)) = (proposals, new.last().copied().cloned()) {
+        proposals.ask(last, result);
     }
     Ok(())
 }
@@ -202,25 +207,14 @@ fn place<'a>(result: &'a MeasureResult, shot: &Shot) -> Option<(&'a Case, &'a Sp
     Some((case, case.rows.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?))
 }
 
-/// What the model would measure next: by name, or why it proposes nothing.
-type Next = Result<String, Failure>;
-
-fn next(arguments: &LiveOptions, result: &MeasureResult, case: &str) -> Option<Next> {
-    let modelled = ModelOptions::default().of_other(arguments.model.as_ref()?);
-    let freed = ParameterOptions { free: arguments.free.clone(), ..ParameterOptions::default() };
-    let options = DesignOptions { modelled, freed, ..DesignOptions::default() };
-    let proposed = || {
-        let experiment = inference::experiment(&options.modelled, Some(case))?;
-        let (_, found) = design::design(&result.curve(case)?, &experiment, &options)?;
-        let best = found.design.ranked.first().map(|best| &found.candidates[best.candidate]);
-        best.map(|best| best.name.clone()).ok_or_else(|| wrong("nothing would help"))
-    };
-    Some(proposed())
-}
-
-fn line_text(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>) -> String {
+/// The file of a shot, and its number there.
+fn name(shot: &Shot) -> String {
     let name = shot.file.file_name().unwrap_or_default().to_string_lossy();
     let number = shot.shot.map_or(String::new(), |shot| format!(" {shot}"));
+    format!("{name}{number}")
+}
+
+fn line_text(shot: &Shot, place: Option<(&Case, &SpeedRow)>, keep_dubious: bool) -> String {
     let speed = shot.speed_m_s.map(|speed| format!("  {} m/s", format::digits(speed.value, 4)));
     let speed = speed.unwrap_or_default();
     let times = match &shot.flight {
@@ -232,7 +226,10 @@ fn line_text(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>
     };
     let flags = Some(shot.flags()).filter(|flags| !flags.is_empty());
     let flags = flags.map_or(String::new(), |flags| format!("  [{flags}]"));
-    let mut text = format!("{name}{number}{speed}  {times}{flags}\n");
+    let reasons = Some(shot.reasons(keep_dubious)).filter(|codes| !codes.is_empty());
+    let reasons =
+        reasons.map_or(String::new(), |codes| format!("  not counted: {}", codes.join(" ")));
+    let mut text = format!("{}{speed}  {times}{flags}{reasons}\n", name(shot));
     if let Some((case, row)) = place {
         let mean = summary::mean(&row.incident_s, row.shared_s[0]);
         let (shots, speed) = (row.shots.0, format::digits(row.speed_m_s.value, 4));
@@ -241,19 +238,16 @@ fn line_text(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>
         let law = summary::law("incident", case, &case.laws.incident);
         text += &(if law.is_empty() { law } else { format!("  {law}") });
     }
-    text + &match next {
-        None => String::new(),
-        Some(Ok(best)) => format!("  next: {best}\n"),
-        Some(Err(error)) => format!("  next: not known yet: {error}\n"),
-    }
+    text
 }
 
-fn line_json(shot: &Shot, place: Option<(&Case, &SpeedRow)>, next: Option<&Next>) -> Value {
+/// A shot's line; what to measure next has one of its own, later.
+fn line_json(shot: &Shot, place: Option<(&Case, &SpeedRow)>, keep_dubious: bool) -> Value {
     json!({
-        "shot": measure::shot(shot, false),
+        "shot": measure::shot(shot, keep_dubious),
         "mean": place.map(|(_, row)| measure::row(row)),
         "power_law_incident": place.map(|(case, _)| measure::law(case, &case.laws.incident)),
-        "next": next.and_then(|next| next.as_ref().ok()),
-        "next_missing": next.and_then(|next| next.as_ref().err()).map(ToString::to_string),
+        "next": null,
+        "next_missing": null,
     })
 }
