@@ -41,7 +41,9 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
         }
         if !files.is_empty() {
             report(&measured, &live, &files, proposals.as_ref())?;
-            // Measuring many files is no silence.
+        }
+        // Neither measuring nor a proposal, which the user may wait for, is silence.
+        if !files.is_empty() || proposals.as_ref().is_some_and(Proposals::is_busy) {
             last = Instant::now();
         }
         let stop = arguments.stop_after.map(|time| Duration::from_secs_f64(time.0));

@@ -6,6 +6,8 @@ use crate::program::{Failure, failure, print};
 use crate::{design, inference, sweep};
 use hertzchain_measure::Shot;
 use serde_json::json;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 
@@ -15,6 +17,7 @@ type Request = (Shot, MeasureResult);
 /// Proposals of the next measurement, each printed when it is known.
 pub(super) struct Proposals {
     requests: Sender<Request>,
+    busy: Arc<AtomicBool>,
     worker: JoinHandle<Result<(), Failure>>,
 }
 
@@ -29,14 +32,22 @@ impl Proposals {
         failure::print_improbable([&inference::experiment(&options.modelled, None)?]);
         let (requests, waiting) = channel();
         let json = arguments.measured.json;
-        let worker = thread::spawn(move || follow(&waiting, &options, json));
-        Ok(Some(Self { requests, worker }))
+        let busy = Arc::new(AtomicBool::new(false));
+        let computing = busy.clone();
+        let worker = thread::spawn(move || follow(&waiting, &options, json, &computing));
+        Ok(Some(Self { requests, busy, worker }))
     }
 
     /// Asks for what follows a shot; while another is computed, the latest request waits alone.
     pub(super) fn ask(&self, shot: Shot, result: MeasureResult) {
+        self.busy.store(true, Ordering::Relaxed);
         // A worker that has ended could not print; that is reported at the end.
         let _ended = self.requests.send((shot, result));
+    }
+
+    /// Whether a proposal is being computed that the user may wait for.
+    pub(super) fn is_busy(&self) -> bool {
+        self.busy.load(Ordering::Relaxed) && !self.worker.is_finished()
     }
 
     /// Waits for the last proposal.
@@ -47,16 +58,23 @@ impl Proposals {
     }
 }
 
-fn follow(waiting: &Receiver<Request>, options: &DesignOptions, json: bool) -> Result<(), Failure> {
+fn follow(
+    waiting: &Receiver<Request>,
+    options: &DesignOptions,
+    json: bool,
+    busy: &AtomicBool,
+) -> Result<(), Failure> {
     // Threads of its own, so that it keeps no shot from being measured.
     let pool = sweep::pool(None)?;
     while let Ok(first) = waiting.recv() {
+        busy.store(true, Ordering::Relaxed);
         let (shot, result) = waiting.try_iter().last().unwrap_or(first);
         let next = pool.install(|| proposed(&result, &shot.case, options));
         match json {
             true => print::print(&line_json(&shot, &next))?,
             false => print::print(&line_text(&shot, &next))?,
         }
+        busy.store(false, Ordering::Relaxed);
     }
     Ok(())
 }
