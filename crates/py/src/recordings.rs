@@ -77,7 +77,7 @@ pub(crate) fn measure<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Measure = parsed("measure", options)?;
-    let rig = measuring::rig(&arguments)?;
+    let rig = measuring::rig(&arguments).map_err(PyFailure::from)?;
     let lines: Vec<String> = warnings(&rig).iter().map(Warning::one_line).collect();
     warn(py, lines.iter().map(String::as_str))?;
     // A single recording may have millions of samples.
