@@ -37,7 +37,7 @@ pub struct LiveMeasurement {
     seen: BTreeMap<PathBuf, Stamp>,
     measured: BTreeMap<PathBuf, (Stamp, Measurement)>,
     /// What the folder has beside recordings.
-    note: Option<Note>,
+    notes: Vec<Note>,
     /// Why the table of shots that is there now was not read, if so; the one before still holds.
     pub list_error: Option<String>,
 }
@@ -55,7 +55,7 @@ impl LiveMeasurement {
             list: arguments.shots.as_deref().and_then(stamp),
             seen: BTreeMap::new(),
             measured: BTreeMap::new(),
-            note: None,
+            notes: Vec::new(),
             list_error: None,
         })
     }
@@ -71,8 +71,8 @@ impl LiveMeasurement {
         let stamped = files.into_iter().filter(|file| !is_list(file));
         let found: BTreeMap<PathBuf, Stamp> =
             stamped.filter_map(|file| Some((file.clone(), stamp(&file)?))).collect();
-        others.retain(|other| !is_list(other));
-        self.note = measure::passed_over(&self.folder, &others);
+        others.retain(|(other, _)| !is_list(other));
+        self.notes = measure::passed_over(&self.folder, others);
         self.measured.retain(|file, _| found.contains_key(file));
         let is_measured = |file: &PathBuf, stamp: &Stamp| {
             self.measured.get(file).is_some_and(|(measured, _)| measured == stamp)
@@ -105,7 +105,7 @@ impl LiveMeasurement {
     pub fn result(&self) -> MeasureResult {
         let files = self.measured.iter().map(|(file, (_, measured))| (file, measured));
         let mut shots = Measurement::of_files(files, self.options.list.as_ref());
-        shots.notes.splice(0..0, self.note.clone());
+        shots.notes.splice(0..0, self.notes.iter().cloned());
         let curves = shots.curves(&measure::grouping(&self.arguments));
         MeasureResult { shots, curves }
     }

@@ -64,14 +64,14 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Ve
     Ok((files, notes))
 }
 
-/// What a folder has beside recordings; an instrument's binary file with how it is exported.
-pub(crate) type Others = Vec<(PathBuf, Option<String>)>;
-
 /// Whether a file is the table of shots, by whatever path.
 pub(crate) fn is_list(list: Option<&Path>) -> impl Fn(&PathBuf) -> bool + use<> {
     let list = list.and_then(|list| list.canonicalize().ok());
     move |file| list.is_some() && file.canonicalize().ok() == list
 }
+
+/// What a folder has beside recordings; an instrument's binary file with how it is exported.
+pub(crate) type Others = Vec<(PathBuf, Option<String>)>;
 
 /// Recordings in a folder, and what else is there, in order of their names.
 pub(crate) fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Others), Failure> {
