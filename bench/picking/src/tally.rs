@@ -228,7 +228,7 @@ fn shot_of(row: &Row, (samples, speed_m_s): &(Vec<Vec<f64>>, f64), fault: &Fault
         bandwidth: fault.low_pass.filter(|_| fault.corrected),
         ..SignalOptions::default()
     };
-    let interval_s = fault.rate_hz.recip();
+    let (interval_s, count) = (fault.rate_hz.recip(), samples[0].len());
     let (flight, doubts, samples) = match measure(channels, interval_s, &measuring) {
         Ok(shot) => (shot.flight, shot.found.flags, shot.samples),
         Err(error) => (Err(error), Vec::new(), [const { None }; 3]),
@@ -241,6 +241,7 @@ fn shot_of(row: &Row, (samples, speed_m_s): &(Vec<Vec<f64>>, f64), fault: &Fault
         programmed_speed_m_s: Some(row.speed_m_s),
         speed_m_s: Some(Estimate { value: *speed_m_s, sigma: 1e-9 }),
         interval_s,
+        duration_s: count as f64 * interval_s,
         flight,
         doubts,
         untriggered: false,
