@@ -1,11 +1,11 @@
-//! Hertz's contact of two bodies at its largest force.
+//! Hertz's contact of two bodies at the peak of a pulse.
 
 use hertzchain_chain::BeadPair;
 use hertzchain_experiment::Units;
 use hertzchain_sim::{Plan, Shot};
 use serde::Serialize;
 
-/// A contact at its largest force: circle and pressure of elastic spheres [Hertz1881].
+/// The wall contact at its largest force: circle and pressure of elastic spheres [Hertz1881].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct HertzContact {
     /// Radius of the circle, a² = R* (F/K)^(2/3).
@@ -22,16 +22,6 @@ impl HertzContact {
         let force_n = shot.passage.as_ref().ok()?.wall.value;
         let pair = plan.chain.pair(plan.chain.beads.len())?;
         (units == Units::Si).then(|| Self::new(&pair, force_n)).flatten()
-    }
-
-    /// Which contact of a row has the highest pressure, its largest force in N, and the contact then.
-    pub(crate) fn of_row(units: Units, plan: &Plan, shot: &Shot) -> Option<(usize, f64, Self)> {
-        let at = |(contact, force_n): (usize, &f64)| {
-            Some((contact, *force_n, Self::new(&plan.chain.pair(contact)?, *force_n)?))
-        };
-        let all = shot.contact_peaks_n.iter().enumerate().filter_map(at);
-        let hardest = all.max_by(|a, b| a.2.pressure_pa.total_cmp(&b.2.pressure_pa));
-        hardest.filter(|_| units == Units::Si)
     }
 
     fn new(pair: &BeadPair, force_n: f64) -> Option<Self> {

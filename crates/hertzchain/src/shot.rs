@@ -151,7 +151,6 @@ pub(crate) fn json(shot: &Shot, units: Units, plan: &Plan) -> Value {
         "accuracy_reached": shot.accuracy_reached,
         "passage": passage(shot, units, plan),
         "wall_contact": HertzContact::of_wall(units, plan, shot),
-        "hardest_contact": HertzContact::of_row(units, plan, shot).map(hardest),
         "sensor_maxima": shot.sensor_maxima.iter().map(peak).collect::<Value>(),
         "pulse_speed_beads_per_s": shot.pulse_speed_beads_s,
         "striker_rebound": shot.rebound.map(|rebound| json!({
@@ -169,12 +168,6 @@ pub(crate) fn json(shot: &Shot, units: Units, plan: &Plan) -> Value {
         "steps": shot.work.steps,
         "notes": shot.notes,
     })
-}
-
-fn hardest((contact, force_n, at_peak): (usize, f64, HertzContact)) -> Value {
-    let mut all = json!(at_peak);
-    (all["contact"], all["force_n"]) = (contact.into(), force_n.into());
-    all
 }
 
 /// A maximum of a signal.

@@ -20,7 +20,6 @@ pub mod rig;
 
 mod batch;
 mod calibration;
-mod contact_peaks;
 mod describe;
 mod duration;
 mod engine;

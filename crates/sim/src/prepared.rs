@@ -1,7 +1,6 @@
 //! Running a plan: once, with steps halved, or again to check.
 
 use crate::accuracy::{self, Forecast, Halvings, MOST_HALVINGS, TIGHTEST};
-use crate::contact_peaks::ContactPeaks;
 use crate::duration::{self, End};
 use crate::error::StudyError;
 use crate::long_work::CountedShots;
@@ -386,7 +385,6 @@ impl<'a> PreparedShot<'a> {
         let mut tracker = Tracker::new(self.plan, &self.end);
         let mut separation = Separation::default();
         let mut apart = Apart;
-        let mut peaks = self.plan.budget.then(|| ContactPeaks::new(&self.system));
         let mut tracer = self.tracer().filter(|_| sampled);
         let mut counted = CountedShots::new(self.plan, &self.system, &self.end);
         let mut observers: Vec<&mut dyn Observer> =
@@ -394,7 +392,6 @@ impl<'a> PreparedShot<'a> {
         if self.end.when_apart {
             observers.push(&mut apart);
         }
-        observers.extend(peaks.as_mut().map(|peaks| peaks as &mut dyn Observer));
         observers.extend(tracer.as_mut().map(|tracer| tracer as &mut dyn Observer));
         let limits = Limits {
             budget: self.plan.budget,
@@ -416,7 +413,6 @@ impl<'a> PreparedShot<'a> {
         let trace = tracer.map(|tracer| self.trace(tracer)).transpose()?;
         let mut shot = self.shot(method, outcome, &tracker, separation, trace);
         shot.finished &= !counted.is_long();
-        shot.contact_peaks_n = peaks.map_or(Vec::new(), |peaks| peaks.forces_n(&self.system));
         shot.notes.extend(self.ended_early(&shot, &tracker));
         Ok(shot)
     }

@@ -50,8 +50,6 @@ pub struct Shot {
     pub pulse_speed_beads_s: Option<f64>,
     /// The striker afterwards; `None` without a striker.
     pub rebound: Option<Rebound>,
-    /// Largest force of each contact in N, the one at rest included, when a budget was asked for.
-    pub contact_peaks_n: Vec<f64>,
     /// Energy at the end, when a budget was asked for.
     pub budget: Option<Budget>,
     /// What was sampled, when that was asked for.
@@ -115,7 +113,6 @@ impl Shot {
             pulse_speed_beads_s: passed.map(|passage| between / passage.tof_incident_s()),
             passage,
             rebound: None,
-            contact_peaks_n: Vec::new(),
             budget: None,
             trace: None,
             duration_s,

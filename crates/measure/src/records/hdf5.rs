@@ -78,9 +78,9 @@ fn beginning(file: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Bytes of a file in which attributes of groups are searched for.
 const SEARCHED: u64 = 1 << 26;
 
-/// The number that attributes of this name, in any case, have, whatever they are of, if it is one. The library
-/// reads numbers of datasets only, so messages are searched for by the name: it stands 8 bytes
-/// after a message's begin, 9 in version 3.
+/// The number that attributes of this name, in any case, have, whatever they are of, if it is one.
+/// The library reads numbers of datasets only, so messages are searched for by the name: it stands
+/// 8 bytes after a message's begin, 9 in version 3.
 fn attribute_anywhere(bytes: &[u8], name: &str) -> Option<f64> {
     let ended = [name.as_bytes(), b"\0"].concat();
     let places = places_of(bytes, &ended);

@@ -15,8 +15,8 @@ const PREAMBLE: u64 = 128;
 const TAG: u64 = 8;
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
-/// Classes of cells, of structs, and of arrays of numbers, from double to the unsigned integer of 64 bits, and the flag of
-/// complex ones.
+/// Classes of cells, of structs, and of arrays of numbers, from double to the unsigned integer of
+/// 64 bits, and the flag of complex ones.
 const CELLS: u32 = 1;
 const FIELDS: u32 = 2;
 const NUMBERS: std::ops::RangeInclusive<u32> = 6..=15;

@@ -144,18 +144,17 @@ fn pulses(style: Style, seen: &Passage) -> Rows {
     rows
 }
 
-/// The contact of the highest pressure, and when its balls yield.
+/// The wall contact at the pulse's peak, and when its balls yield.
 fn contact(style: Style, plan: &Plan, shot: &Shot) -> Option<(String, String)> {
-    let (contact, force_n, found) = HertzContact::of_row(style.units, plan, shot)?;
+    let found = HertzContact::of_wall(style.units, plan, shot)?;
     let brief = Style::brief(style.units);
     let text = format!(
-        "contact {contact} at {}: radius {}, largest pressure {}: balls of a yield strength below {} yield",
-        brief.quantity(force_n, "N"),
+        "radius {}, largest pressure {}: balls of a yield strength below {} yield",
         brief.quantity(found.radius_m, "m"),
         brief.quantity(found.pressure_pa, "Pa"),
         brief.quantity(found.yield_strength_pa, "Pa"),
     );
-    Some(("hardest contact".to_owned(), text))
+    Some(("wall contact at its peak".to_owned(), text))
 }
 
 fn energy(style: Style, budget: &Budget) -> Rows {
