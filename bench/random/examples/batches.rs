@@ -7,7 +7,7 @@
 //!
 //! Speeds of a row are from a third to three times its own, of a preset from 0.075 to 1.23 m/s, evenly spread in
 //! their logarithm. A batch of them, as `sweep` makes it, is compared with shots by the adaptive loop at a hundredth
-//! of the accuracy asked, and where these contradict it with others at 1e-9. Accuracies are 1e-3 to 1e-6, by turns.
+//! of the accuracy asked, and where these contradict it with others at 1e-10. Accuracies are 1e-3 to 1e-7, by turns.
 #![allow(
     clippy::print_stdout,
     dead_code,
@@ -31,9 +31,9 @@ use std::time::Instant;
 
 type Failure = Box<dyn Error + Send + Sync>;
 
-const ACCURACIES: [f64; 4] = [1e-3, 1e-4, 1e-5, 1e-6];
+const ACCURACIES: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 /// Accuracy of shots that decide where two runs contradict.
-const EXACT: f64 = 1e-9;
+const EXACT: f64 = 1e-10;
 /// A row is left out whose first shots take longer than this in s.
 const PATIENCE_S: f64 = 0.2;
 
@@ -152,7 +152,7 @@ fn main() -> Result<(), Failure> {
         {
             continue;
         }
-        let accuracy = ACCURACIES[(at % 4) as usize];
+        let accuracy = ACCURACIES[(at % 5) as usize];
         let range = format!("log:{}:{}:{speeds}", own[0] / 3.0, own[0] * 3.0);
         let tally = tallies.entry(format!("rows {accuracy:.0e}")).or_default();
         let name = format!("row {at} of seed {seed}");

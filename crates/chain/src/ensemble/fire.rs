@@ -245,7 +245,7 @@ fn fire_block<N: Number<W>, const W: usize>(
     let extremes = |sensor| recorder.extremes(sensor, settings.set);
     let extremes: Vec<Vec<Vec<usize>>> = (0..settings.sensors.len()).map(extremes).collect();
     for (at, lane) in flying.into_iter().enumerate() {
-        let clock = Clock { schedule, step_s: steps_s[at] };
+        let clock = Clock { schedule, step_s: steps_s[at], step: shots[at].step };
         let signals = settings.sensors.iter().enumerate().map(|(index, &sensor)| {
             let trace = LaneTrace {
                 samples: recorder.samples(index, at),
