@@ -5,7 +5,6 @@ use crate::common::{self, close, cubic, hertz, shoot, viscoelastic};
 use hertzchain_chain::ensemble::{Precision, Shot, fire};
 use hertzchain_chain::laws::{FilmEntrained, Law, law};
 use hertzchain_chain::observe::{Trace, Tracer};
-use hertzchain_chain::settle::{SlowPhase, State, settle};
 use hertzchain_chain::wave::{Budget, Limits, Method, Outcome, run};
 use hertzchain_chain::*;
 use serde_json::Value;
@@ -198,9 +197,6 @@ fn what_has_no_states_refuses_oil() {
     let limits = Limits::until(1e-4);
     let fixed = run(&system, &Method::rk4(1e-7), limits, &mut []).unwrap_err();
     assert!(fixed.to_string().contains("needs adaptive steps"), "{fixed}");
-    let mut state = State::start(&system);
-    let slow = settle(&system, &mut state, &SlowPhase::default(), &mut |_, _, _| {}).unwrap_err();
-    assert!(slow.to_string().contains("film_entrained"), "{slow}");
     let shot = Shot { system: &system, step: 0.02, duration_s: 1e-3, precision: Precision::Double };
     let batch = fire(&[shot], &settings(40)).remove(0).unwrap_err();
     assert!(batch.to_string().contains("needs the wave loop"), "{batch}");
