@@ -104,6 +104,10 @@ fn the_gauge_frees_a_films_viscosity_in_place_of_k_and_a() {
     assert!(found.get("scanned_s").is_none(), "{found}");
     let table = std::fs::read_to_string(format!("{out}/contacts.csv")).unwrap();
     assert!(table.lines().nth(1).unwrap().contains("viscosity"), "{table}");
+    let summary = std::fs::read_to_string(format!("{out}/summary.csv")).unwrap();
+    assert!(summary.contains("film_probability"), "{summary}");
+    let figure = std::fs::read_to_string(format!("{out}/contacts.svg")).unwrap();
+    assert!(figure.contains("all speeds together") && figure.contains("viscosity (Pa s)"));
     let power = ["--film", "viscosity:power"];
     refused(&with_errors(&[&gauge[..], &power].concat()));
     let oils = ["--film", "viscosity", "--oils", "oils.csv"];

@@ -139,6 +139,15 @@ def test_a_design_and_a_gauge_are_those_of_the_command_line(cli, tmp_path, table
     assert pickled(gauged) and gauged.to_xarray()["stiffness"].attrs["units"] == "N/m^1.5"
 
 
+def test_a_gauge_of_a_film_is_a_table_of_the_films_numbers():
+    number = {"name": "viscosity", "unit": "Pa s", "value": 0.1, "standard_error": 0.01}
+    rows = [{"speed_m_s": 0.5, "film": {**number, "determined": True}}, {"speed_m_s": 0.6, "missing": "no fit"}]
+    gauged = hc.GaugeResult({"verdict": "One film.", "oils": [], "contacts": rows, "film": {"parameters": [number]}})
+    assert gauged.to_pandas()["value"].tolist() == [0.1] and "0.1 ± 0.01 Pa s" in repr(gauged)
+    film = gauged.to_xarray()["film"]
+    assert film.values.tolist() == [0.1] and film.attrs["units"] == "Pa s"
+
+
 def test_a_measurement_is_fitted_in_memory_as_from_its_file(tmp_path):
     row = hc.load(ROOT / "crates/sim/tests/small.toml")
     hc.campaign(row, tmp_path / "records")

@@ -39,9 +39,14 @@ fn summary(run_gauge: &GaugeResult, found: &Value) -> String {
     all["dry_goodness"] = json!(run_gauge.gauge.dry_goodness().chi_square.map(|of| json!({
         "value": of.value, "freedom": of.freedom, "probability": of.probability,
     })));
-    let shown = "verdict,doubts,to_add,dry_chi_square=dry_goodness/value,\
-                 dry_freedom=dry_goodness/freedom,dry_probability=dry_goodness/probability";
-    quantities(&all, &columns(shown))
+    let mut shown = "verdict,doubts,to_add,dry_chi_square=dry_goodness/value,\
+                     dry_freedom=dry_goodness/freedom,dry_probability=dry_goodness/probability"
+        .to_owned();
+    if run_gauge.film.is_some() {
+        shown += ",film_chi_square=film/chi_square,film_freedom=film/freedom,\
+                  film_probability=film/probability";
+    }
+    quantities(&all, &columns(&shown))
 }
 
 /// One line a pair of K and A that a speed allows, the one taken first if any is; one line a

@@ -225,18 +225,7 @@ class Trace(Result):
     dimensionless: bool = False
 
     def unit(self, sensor: str) -> str:
-        """Unit of a sensor's signal.
-
-        Parameters
-        ----------
-        sensor : str
-            Its name, such as ``"bead_7"``.
-
-        Returns
-        -------
-        str
-            "N", "m", "m/s", or "1" without units.
-        """
+        """Unit of a sensor's signal, by its name, such as ``"bead_7"``: "N", "m", "m/s", or "1" without units."""
         if self.dimensionless:
             return "1"
         return {"position": "m", "velocity": "m/s"}.get(sensor.split("_")[0], "N")
@@ -903,31 +892,41 @@ class GaugeResult(Result):
     oils : list of dict
         Known oils, nearest first: distance in standard errors, probability, whether possible.
     contacts : list of dict
-        Stiffness K in N/m^1.5 and relaxation time A in s, speed by speed; xarray gets these.
+        Stiffness K in N/m^1.5 and relaxation time A in s, or a film's number, speed by speed; xarray gets these.
+    film : dict or None
+        A film's numbers in place of oils (``parameters``, then the table), chi-square of the wet data.
     dry : list of dict
         Fitted parameters of the dry contacts.
     details : dict
         All of ``gauge.json``.
     """
 
-    _rows = "oils"
     _fields = ("name", "distance", "possible", "probability", "chi_square", "freedom")
 
     details: dict[str, Any]
 
     def _units(self) -> dict[str, str]:
-        return {"distance": "standard error", **dict.fromkeys(("stiffness", "stiffness_error"), "N/m^1.5")}
+        film = next((row["film"]["unit"] for row in self.contacts if "film" in row), "1")
+        units = {"stiffness": "N/m^1.5", "stiffness_error": "N/m^1.5", "film": film, "film_error": film}
+        return {"distance": "standard error", **units, **dict.fromkeys(("value", "standard_error"), "as in the column unit")}
 
     def _variables(self) -> dict[str, Variable]:
         found = [row for row in self.contacts if "missing" not in row]
         made: dict[str, Variable] = {"speed_m_s": (("speed_m_s",), [row["speed_m_s"] for row in found])}
-        for of, error in (("stiffness", "stiffness_error"), ("relaxation_time_s", "relaxation_time_error_s")):
+        both = (("stiffness", "stiffness_error"), ("relaxation_time_s", "relaxation_time_error_s"))
+        for of, error in [("film", "film_error")] if self.film else both:
             for name, part in ((of, "value"), (error, "standard_error")):
                 made[name] = ("speed_m_s",), [number((row.get(of) or {}).get(part)) for row in found]
         return made
 
+    def _columns(self) -> dict[str, list[Any]]:
+        rows, names = (self.film["parameters"], ("name", "value", "standard_error", "unit")) if self.film else (self.oils, self._fields)
+        return {name: [row[name] for row in rows] for name in names}
+
     def _summary(self) -> tuple[str, dict[str, str]]:
         rows = {oil["name"]: f"{short(oil['distance'], 3)} standard errors away, {'possible' if oil['possible'] else 'rejected'}" for oil in self.oils}
+        for of in (self.film or {}).get("parameters", ()):
+            rows[of["name"]] = f"{short(of['value'], 4)} ± {short(of['standard_error'], 2)} {of['unit']}"
         if flags := self.details.get("doubts"):
             rows["warning"] = flags
         return self.verdict, rows

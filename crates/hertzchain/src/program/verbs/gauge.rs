@@ -41,7 +41,7 @@ fn write(
 ) -> Result<(), Failure> {
     folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
     folder.tables(&gauge::tables(run_gauge, all))?;
-    if run_gauge.film.is_none() && run_gauge.rows.iter().any(|row| row.contact.is_ok()) {
+    if run_gauge.rows.iter().any(|row| row.contact.is_ok()) {
         folder.figure("contacts", &pictures::contacts(run_gauge))?;
     }
     folder.finish_and_report()

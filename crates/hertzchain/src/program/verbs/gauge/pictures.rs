@@ -1,13 +1,17 @@
-//! K and A of the wet contacts against speed, beside those of known oils.
+//! K and A of the wet contacts against speed, beside those of known oils, or a film's number.
 
 use crate::gauge::GaugeResult;
 use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series, case_look};
 use hertzchain_infer::gauge::{Branch, Contact, Oil, Pair, is_determined};
+use hertzchain_infer::{Covariance, Parameter, Problem};
 
 /// Speeds at which an oil's curve is drawn.
 const POINTS: usize = 60;
 
 pub(super) fn contacts(run_gauge: &GaugeResult) -> Figure {
+    if let Some(number) = run_gauge.gauge.film_number() {
+        return Figure::single_column(70.0).panel(film(run_gauge, &number));
+    }
     match has_both(run_gauge) {
         true => Figure::single_column(120.0)
             .share_x()
@@ -20,6 +24,27 @@ pub(super) fn contacts(run_gauge: &GaugeResult) -> Figure {
             1e-9,
         )),
     }
+}
+
+/// A film's number at each speed, and that of all speeds together with its standard error.
+fn film(run_gauge: &GaugeResult, number: &Parameter) -> Chart {
+    let end = number.name.rsplit('.').next().unwrap_or(&number.name).replace('_', "-");
+    let label = format!("Film's {end} ({})", number.unit);
+    let mut chart = Chart::new("Speed of the striker (m/s)", &label).x_log();
+    if let Some((problem, fit, _)) = &run_gauge.film {
+        let same = |of: &Parameter| of.name == number.name;
+        let ends = [speeds(run_gauge)[0], speeds(run_gauge)[POINTS - 1]];
+        if let Some(at) = problem.parameters().iter().position(same) {
+            let (value, sd) = (fit.point[at], Covariance::new(problem.parameters(), fit).sd[at]);
+            if is_determined(value, sd) {
+                let band = Series::band("", &ends, &[value - sd; 2], &[value + sd; 2]);
+                chart = chart.with(band.colour(case_look("pump", 0).0));
+            }
+            let line = Series::line("all speeds together", &ends, &[value; 2]);
+            chart = chart.with(line.colour(case_look("pump", 0).0));
+        }
+    }
+    chart.with(measured(run_gauge, 0, 1.0))
 }
 
 /// Whether any row determines both K and A. If none does, an oil's K is another quantity than what
@@ -41,21 +66,7 @@ fn panel(run_gauge: &GaugeResult, of: usize, label: &str, unit: f64) -> Chart {
     let oils = run_gauge.oils.iter().take(shown).enumerate();
     let chart =
         oils.fold(chart, |chart, (at, oil)| chart.with(curve(run_gauge, (at, oil), of, unit)));
-    let known = run_gauge.rows.iter().filter_map(|row| {
-        let contact = row.contact.as_ref().ok()?;
-        if contact.branch == Branch::Unknown {
-            return None;
-        }
-        let (value, sd) = contact.first.estimates()[of];
-        is_determined(value, sd).then_some((row.speed_m_s, unit * value, unit * sd))
-    });
-    let known: Vec<(f64, f64, f64)> = known.collect();
-    let column = |of: fn(&(f64, f64, f64)) -> f64| known.iter().map(of).collect::<Vec<f64>>();
-    let name = if known.is_empty() { "" } else { "measured" };
-    let points = Series::points(name, &column(|p| p.0), &column(|p| p.1))
-        .y_error(&column(|p| p.2))
-        .marker(Marker::Circle)
-        .colour(Colour::BLACK);
+    let points = measured(run_gauge, of, unit);
     let others = run_gauge.rows.iter().filter_map(|row| {
         let contact = row.contact.as_ref().ok()?;
         let others = match contact.branch {
@@ -74,6 +85,25 @@ fn panel(run_gauge: &GaugeResult, of: usize, label: &str, unit: f64) -> Chart {
             chart.with(others.colour(Colour::BLACK)).with(points)
         }
     }
+}
+
+/// What the rows determine of a number, with its standard errors.
+fn measured(run_gauge: &GaugeResult, of: usize, unit: f64) -> Series {
+    let known = run_gauge.rows.iter().filter_map(|row| {
+        let contact = row.contact.as_ref().ok()?;
+        if contact.branch == Branch::Unknown {
+            return None;
+        }
+        let (value, sd) = contact.first.estimates()[of];
+        is_determined(value, sd).then_some((row.speed_m_s, unit * value, unit * sd))
+    });
+    let known: Vec<(f64, f64, f64)> = known.collect();
+    let column = |of: fn(&(f64, f64, f64)) -> f64| known.iter().map(of).collect::<Vec<f64>>();
+    let name = if known.is_empty() { "" } else { "measured" };
+    Series::points(name, &column(|p| p.0), &column(|p| p.1))
+        .y_error(&column(|p| p.2))
+        .marker(Marker::Circle)
+        .colour(Colour::BLACK)
 }
 
 /// Speeds in m/s at which lines are drawn.
