@@ -4,6 +4,7 @@
 The first byte of a record chooses its ending (fuzz_targets/records.rs) and is no part of the file.
 """
 
+import json
 import sys
 import tempfile
 from pathlib import Path
@@ -30,6 +31,11 @@ def main() -> None:
     table = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error\n0.2,1e-4,9.03e-4,2e-7\n0.5,1e-4,7.56e-4,2e-7\n"
     write("tables", "curve", table.encode())
     write("tables", "shots", b"file;shot;case;speed;speed error\na.csv;1;dry;0,5;0,001\nb.csv;;gear;0,7;0,001\n")
+    places = [[0.1 * at, 0.2 - 0.1 * at] for at in range(8)]
+    chain = {"names": ["a", "b"], "seed": 1, "ensembles": 2, "differential_share": 0.5, "keep_every": 1, "loss": "Squares"}
+    chain |= {"steps": 2, "places": places, "ln_densities": [-0.5 * (a * a + b * b) for a, b in places]}
+    chain |= {"samples": [number for place in 2 * places for number in place], "accepted": 7, "failed": 0}
+    write("checkpoint", "chain", json.dumps(chain).encode())
     time_s = 1e-6 * np.arange(100)
     volts = np.exp(-(((time_s - 3e-5) / 5e-6) ** 2)) + 1.5 * np.exp(-(((time_s - 7e-5) / 5e-6) ** 2))
     with tempfile.TemporaryDirectory() as name:

@@ -260,6 +260,7 @@ const STEEL: Material = Material {
     poisson_ratio: 0.3,
     shear_viscosity_pa_s: 3.2e4,
     bulk_viscosity_pa_s: 3.2e4,
+    yield_strength_pa: None,
 };
 
 const BALL: Bead = Bead {

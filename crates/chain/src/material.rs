@@ -14,6 +14,8 @@ pub struct Material {
     pub shear_viscosity_pa_s: f64,
     /// Bulk viscosity η2 in Pa s.
     pub bulk_viscosity_pa_s: f64,
+    /// Yield strength in Pa, if it is known.
+    pub yield_strength_pa: Option<f64>,
 }
 
 impl Material {
@@ -23,6 +25,7 @@ impl Material {
         poisson_ratio: 0.0,
         shear_viscosity_pa_s: 0.0,
         bulk_viscosity_pa_s: 0.0,
+        yield_strength_pa: None,
     };
 
     /// An elastic material without viscosity.
@@ -32,6 +35,7 @@ impl Material {
             poisson_ratio,
             shear_viscosity_pa_s: 0.0,
             bulk_viscosity_pa_s: 0.0,
+            yield_strength_pa: None,
         }
     }
 

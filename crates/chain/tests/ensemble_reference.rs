@@ -19,6 +19,7 @@ fn wet(young: f64, eta: (f64, f64), nu: (f64, f64), speed: f64) -> Chain {
         poisson_ratio: nu.0 * speed.powf(nu.1),
         shear_viscosity_pa_s: eta.0 * speed.powf(eta.1),
         bulk_viscosity_pa_s: eta.0 * speed.powf(eta.1),
+        yield_strength_pa: None,
     };
     let section = |contacts, laws, material| Section { contacts, laws, material };
     Chain {

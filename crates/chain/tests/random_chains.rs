@@ -15,6 +15,7 @@ fn material() -> impl Strategy<Value = Material> {
         poisson_ratio,
         shear_viscosity_pa_s: eta,
         bulk_viscosity_pa_s: eta,
+        yield_strength_pa: None,
     })
 }
 

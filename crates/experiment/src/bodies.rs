@@ -14,6 +14,7 @@ pub(crate) struct MaterialSpec {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
     pub(crate) density_kg_m3: Option<f64>,
+    yield_strength_pa: Option<f64>,
     /// Largest Poisson ratio; a reading bounds it.
     pub(crate) largest_poisson_ratio: f64,
     /// Whether a reading takes the bulk viscosity away.
@@ -90,6 +91,7 @@ impl MaterialSpec {
         Ok(Self {
             name: name.to_owned(),
             density_kg_m3: table.quantity("density")?,
+            yield_strength_pa: table.quantity("yield_strength")?,
             largest_poisson_ratio: f64::INFINITY,
             without_bulk_viscosity: false,
             young_modulus: needed("young_modulus")?,
@@ -135,6 +137,7 @@ impl MaterialSpec {
             poisson_ratio,
             shear_viscosity_pa_s,
             bulk_viscosity_pa_s: if self.without_bulk_viscosity { 0.0 } else { bulk },
+            yield_strength_pa: self.yield_strength_pa,
         };
         Ok((material, self.beyond_half(poisson_ratio, speed_m_s)))
     }

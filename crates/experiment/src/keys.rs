@@ -282,6 +282,7 @@ static MATERIAL: Fields = table! { "[materials.NAME]";
     shear_viscosity: VISCOSITY, "shear viscosity η1; default 0";
     bulk_viscosity: VISCOSITY, "bulk viscosity η2; default: as shear_viscosity";
     density: positive("kg/m^3"), "density, for beads without a mass";
+    yield_strength: positive("Pa"), "yield strength, to report first yield";
 };
 
 static CELL: Fields = table! { "a member of cell";

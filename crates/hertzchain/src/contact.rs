@@ -1,40 +1,90 @@
-//! Hertz's contact of two bodies at the peak of a pulse.
+//! Hertz's contact of two bodies at its largest force.
 
-use hertzchain_chain::BeadPair;
+use hertzchain_chain::{BeadPair, Chain};
 use hertzchain_experiment::Units;
-use hertzchain_sim::{Plan, Shot};
+use hertzchain_sim::{Group, Plan, Row, Shot, Value};
 use serde::Serialize;
+use std::f64::consts::PI;
 
-/// The wall contact at its largest force: circle and pressure of elastic spheres [Hertz1881].
+/// Spheres of ν = 0.3 yield first, below the surface, where p₀ is so many times the yield strength
+/// [Thornton1997].
+const FIRST_YIELD: f64 = 1.6;
+
+/// A contact at its largest force: circle and pressure of elastic spheres [Hertz1881].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct HertzContact {
+    /// Number of the contact.
+    pub(crate) contact: usize,
+    /// Its largest force.
+    pub(crate) force_n: f64,
     /// Radius of the circle, a² = R* (F/K)^(2/3).
     pub(crate) radius_m: f64,
     /// Largest pressure, p₀ = 3 F/(2 π a²).
     pub(crate) pressure_pa: f64,
     /// Yield strength of the balls below which they yield at this force.
     pub(crate) yield_strength_pa: f64,
+    /// Yield strength of the weaker ball, where it is known.
+    pub(crate) material_yield_strength_pa: Option<f64>,
 }
 
 impl HertzContact {
-    /// Of a shot; `None` without a wall pulse, material or unit.
+    /// The wall's; `None` without a wall pulse, material or unit.
     pub(crate) fn of_wall(units: Units, plan: &Plan, shot: &Shot) -> Option<Self> {
         let force_n = shot.passage.as_ref().ok()?.wall.value;
-        let pair = plan.chain.pair(plan.chain.beads.len())?;
-        (units == Units::Si).then(|| Self::new(&pair, force_n)).flatten()
+        Self::of(units, plan, (plan.chain.beads.len(), force_n))
     }
 
-    fn new(pair: &BeadPair, force_n: f64) -> Option<Self> {
-        /// Spheres of ν = 0.3 yield first, below the surface, where p₀ is so many times the
-        /// yield strength [Thornton1997].
-        const FIRST_YIELD: f64 = 1.6;
+    /// That of the highest pressure; `None` without a material or unit.
+    pub(crate) fn hardest(units: Units, plan: &Plan, shot: &Shot) -> Option<Self> {
+        Self::of(units, plan, shot.hardest?)
+    }
+
+    fn of(units: Units, plan: &Plan, (contact, force_n): (usize, f64)) -> Option<Self> {
+        let pair = plan.chain.pair(contact).filter(|_| units == Units::Si)?;
+        Self::new((contact, &pair), force_n)
+    }
+
+    fn new((contact, pair): (usize, &BeadPair), force_n: f64) -> Option<Self> {
         let overlap_m = (force_n / pair.hertz_stiffness()).powf(2.0 / 3.0);
         let radius_m = (pair.radius_m * overlap_m).sqrt();
-        let pressure_pa = 1.5 * force_n / (std::f64::consts::PI * radius_m * radius_m);
-        let yield_strength_pa = pressure_pa / FIRST_YIELD;
+        let pressure_pa = 1.5 * force_n / (PI * radius_m * radius_m);
         let is_known = pressure_pa.is_finite() && pressure_pa > 0.0;
-        is_known.then_some(Self { radius_m, pressure_pa, yield_strength_pa })
+        is_known.then_some(Self {
+            contact,
+            force_n,
+            radius_m,
+            pressure_pa,
+            yield_strength_pa: pressure_pa / FIRST_YIELD,
+            material_yield_strength_pa: yield_strength_pa(pair),
+        })
     }
+}
+
+/// Yield strength of the weaker body, where one is known.
+fn yield_strength_pa(pair: &BeadPair) -> Option<f64> {
+    let known = [pair.left, pair.right].into_iter().filter_map(|body| body.yield_strength_pa);
+    known.reduce(f64::min)
+}
+
+/// Force at which the first ball of a contact yields, (π p₀ R*/1.5)³/K² with p₀ of first yield.
+fn first_yield_n(pair: &BeadPair) -> Option<f64> {
+    let pressure_pa = FIRST_YIELD * yield_strength_pa(pair)?;
+    let force_n = (PI * pressure_pa * pair.radius_m / 1.5).powi(3) / pair.hertz_stiffness().powi(2);
+    Some(force_n).filter(|force_n| force_n.is_finite() && *force_n > 0.0)
+}
+
+/// The forces from which on contacts of a chain yield, where yield strengths are known.
+pub(crate) fn first_yield(chain: &Chain) -> Option<Group> {
+    let pairs = (0..=chain.beads.len()).filter_map(|contact| chain.pair(contact));
+    let forces: Vec<f64> = pairs.filter_map(|pair| first_yield_n(&pair)).collect();
+    let least = forces.iter().copied().reduce(f64::min)?;
+    let most = forces.iter().copied().fold(least, f64::max);
+    let value = match least == most {
+        true => Value::Number(least),
+        false => Value::Range(least, most),
+    };
+    let row = Row { name: "force of first yield".to_owned(), value, unit: "N".to_owned() };
+    Some(Group { title: "Yield".to_owned(), rows: vec![row] })
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! What is known of an experiment without a shot: its description in SI, its theory.
 
 use crate::failure::Failure;
-use crate::input;
 use crate::options::CheckOptions;
+use crate::{contact, input};
 use hertzchain_chain::Chain;
-use hertzchain_experiment::{Experiment, Warning};
+use hertzchain_experiment::{Experiment, Units, Warning};
 use hertzchain_sim::{Group, StudyError};
 
 /// Groups of named numbers in SI, and warnings about the experiment.
@@ -38,7 +38,11 @@ pub struct Description {
 /// # Errors
 /// What the physics rejects, at its place in the experiment; a speed that it can't have.
 pub fn check(experiment: &Experiment, options: &CheckOptions) -> Result<Description, Failure> {
-    described(experiment, options, hertzchain_sim::describe)
+    described(experiment, options, |experiment, chain| {
+        let mut groups = hertzchain_sim::describe(experiment, chain)?;
+        groups.extend(contact::first_yield(chain).filter(|_| experiment.units() == Units::Si));
+        Ok(groups)
+    })
 }
 
 /// Returns what theory says of a chain: exact solitary wave, normal modes, band gap, restitution.

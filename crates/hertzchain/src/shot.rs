@@ -151,6 +151,7 @@ pub(crate) fn json(shot: &Shot, units: Units, plan: &Plan) -> Value {
         "accuracy_reached": shot.accuracy_reached,
         "passage": passage(shot, units, plan),
         "wall_contact": HertzContact::of_wall(units, plan, shot),
+        "hardest_contact": HertzContact::hardest(units, plan, shot),
         "sensor_maxima": shot.sensor_maxima.iter().map(peak).collect::<Value>(),
         "pulse_speed_beads_per_s": shot.pulse_speed_beads_s,
         "striker_rebound": shot.rebound.map(|rebound| json!({

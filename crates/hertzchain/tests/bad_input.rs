@@ -76,7 +76,7 @@ fn a_warning_is_underlined_like_a_mistake_and_ends_well() {
         let output = run(arguments);
         let message = reported(&output);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {message}");
-        for part in ["⚠ the Poisson ratio", "warned.toml:14:17", "┬", "above 1/2"] {
+        for part in ["⚠ the Poisson ratio", "warned.toml:16:17", "┬", "above 1/2"] {
             assert!(message.contains(part), "{arguments:?}: {message} lacks {part}");
         }
     }

@@ -25,7 +25,7 @@ fn a_swept_curve_gives_its_own_numbers_back_and_files_beside() {
         assert!(Path::new(out).join(name).exists(), "{name}");
     }
     // One thread or two: the same bits.
-    let one = json(&with_errors(&[&fit[..], &["--threads", "1"]].concat()));
+    let one = json(&with_errors(&[&fit[..], &["--threads", "1", "--force"]].concat()));
     assert_eq!(one, found);
 }
 

@@ -8,6 +8,8 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 const SPEEDS: [f64; 4] = [0.2, 0.4, 0.7, 1.0];
 
@@ -160,6 +162,71 @@ fn what_to_measure_next_follows_each_shot() {
         assert!(next.is_some_and(|next| next.contains("m/s")), "{proposed}");
     }
     assert_eq!(live.rest(), (0, true));
+}
+
+#[test]
+fn why_nothing_can_be_proposed_yet_is_reported() {
+    let (_, shots, list) = setup("live-next-missing");
+    let model = ["--model", "dry", "--free", "eta", "--stop-after", STOP];
+    let mut live =
+        Live::start(&[&[shots.to_str().unwrap(), "--shots", &list], &model[..]].concat());
+    // Its speed is nowhere stated.
+    write(&shots.join("unlisted.csv"), &volts(0.3, 1.0));
+    let line = live.line();
+    assert_eq!((&line["next"], &line["next_missing"]), (&Value::Null, &Value::Null));
+    let proposed = live.line();
+    assert_eq!(proposed["shot"]["file"], line["shot"]["file"]);
+    assert_eq!(proposed["next"], Value::Null);
+    let why = proposed["next_missing"].as_str().unwrap();
+    assert!(why.contains("measured"), "{why}");
+    record(&shots, Path::new(&list), 0);
+    assert_eq!(live.line()["mean"]["shots"], 1);
+    let proposed = live.line();
+    assert!(proposed["next"].is_string() && proposed["next_missing"].is_null(), "{proposed}");
+    assert_eq!(live.rest(), (0, true));
+}
+
+#[test]
+fn live_ends_after_the_time_without_shots_that_it_is_given() {
+    let (_, shots, list) = setup("live-stop-after");
+    let begun = Instant::now();
+    let arguments = [shots.to_str().unwrap(), "--shots", &list, "--stop-after", "700ms"];
+    let mut live = Live::start(&arguments);
+    sleep(Duration::from_millis(400));
+    record(&shots, Path::new(&list), 0);
+    assert_eq!(live.line()["mean"]["shots"], 1);
+    let seen = begun.elapsed();
+    assert_eq!(live.rest(), (0, true));
+    // From the last shot on, not from the start.
+    assert!(begun.elapsed() - seen > Duration::from_millis(600), "{:?}", begun.elapsed());
+    let output = run(&["live", shots.to_str().unwrap(), "--stop-after", "soon"]);
+    let reported = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{reported}");
+    assert!(reported.contains("--stop-after"), "{reported}");
+}
+
+#[test]
+fn live_replaces_tables_of_its_own_recordings_only() {
+    let (all, shots, list) = setup("live-replaced");
+    record(&shots, Path::new(&list), 0);
+    let (into, out) = (shots.to_str().unwrap(), all.join("out"));
+    let arguments =
+        [into, "--shots", &list, "--out", out.to_str().unwrap(), "--stop-after", "600ms"];
+    for _ in 0..2 {
+        let mut live = Live::start(&arguments);
+        assert_eq!(live.line()["mean"]["shots"], 1);
+        assert_eq!(live.rest(), (0, true));
+    }
+    let kept = fs::read(out.join("measured.json")).unwrap();
+    let empty = all.join("empty");
+    fs::create_dir_all(&empty).unwrap();
+    let other = [&["live", empty.to_str().unwrap()], &arguments[3..]].concat();
+    let refused = run(&other);
+    let reported = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{reported}");
+    assert!(reported.contains("measured.json is there already"), "{reported}");
+    assert!(fs::read(out.join("measured.json")).unwrap() == kept);
+    assert!(run(&[&other[..], &["--force"]].concat()).stderr.starts_with(b"measuring"));
 }
 
 #[test]

@@ -168,6 +168,39 @@ fn a_shot_keeps_what_was_shot_and_replaces_another_only_if_asked() {
 }
 
 #[test]
+fn no_verb_replaces_files_of_an_earlier_run_unless_asked() {
+    let folder = folder("replaced");
+    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (dry, page) = (at("dry"), at("page.html"));
+    let sweep = ["sweep", "-p", "dry", "--speeds", "log:0.1:1.2:6", "-a", "1e-4", "--out", &dry];
+    good(&sweep);
+    let data = at("dry/sweep.csv");
+    let fit = ["--preset", "dry", "--free", "eta", "--tof-error", "1us"];
+    let verbs: [(&str, &[&str], &str); 8] = [
+        ("sweep", &["-p", "dry", "--speeds", "1,2"], "sweep.csv"),
+        ("measure", &[&data], "measured.json"),
+        ("fit", &[&[&data[..]], &fit[..]].concat(), "fit.json"),
+        ("fit", &[&[&data[..]], &fit[..]].concat(), "chain.json"),
+        ("design", &[&[&data[..]], &fit[..]].concat(), "design.json"),
+        ("gauge", &[&data, "--dry", &data, "--tof-error", "1us"], "gauge.json"),
+        ("live", &[folder.to_str().unwrap(), "--stop-after", "1ms"], "measured.json"),
+        ("reproduce", &[], "provenance.json"),
+    ];
+    for (verb, arguments, file) in verbs {
+        let out = at(&format!("{verb}-{file}"));
+        fs::create_dir(&out).unwrap();
+        fs::write(folder.join(&out).join(file), "earlier").unwrap();
+        let message = refused(&[&[verb], arguments, &["--out", &out]].concat());
+        assert!(message.contains(&format!("{file} is there already")), "{verb}: {message}");
+        assert_eq!(fs::read_to_string(folder.join(&out).join(file)).unwrap(), "earlier");
+    }
+    fs::write(&page, "earlier").unwrap();
+    let message = refused(&["measure", &data, "--report", &page]);
+    assert!(message.contains("page.html is there already") && message.contains("--report"));
+    good(&[&sweep[..], &["--force"]].concat());
+}
+
+#[test]
 fn a_sweep_prints_the_power_law_of_hertz() {
     let swept = json(&["sweep", "-p", "hertz", "--speeds", "log:0.1:1:5", "-a", "1e-10", "--json"]);
     let exponent = swept["power_law_incident"]["exponent"].as_f64().unwrap();

@@ -76,7 +76,9 @@ fn merged_shards_of_a_sweep_are_the_files_and_the_words_of_the_sweep() {
     let files = scratch.files("whole");
     assert_eq!(files.len(), 3);
     assert!(scratch.files("merged") == files);
-    let output = scratch.run(&["merge", "a", "b", "--out", "merged"]);
+    let reported = scratch.refused(&["merge", "a", "b", "--out", "merged"]);
+    assert!(reported.contains("sweep.csv is there already"), "{reported}");
+    let output = scratch.run(&["merge", "a", "b", "--out", "merged", "--force"]);
     let reported = String::from_utf8(output.stderr).unwrap();
     assert!(reported.contains("no shot at"), "{reported}");
 }

@@ -171,10 +171,16 @@ fn a_chain_saved_and_continued_has_the_bits_of_an_uninterrupted_one() {
     read.advance(&data, 59).unwrap();
     assert_eq!(read, whole);
     // Damaged files and other parameters are refused.
-    let cut = text.replacen("\"steps\":41", "\"steps\":57", 1);
-    let mut damaged: Chain = serde_json::from_str(&cut).unwrap();
-    let error = damaged.advance(&data, 1).unwrap_err().to_string();
-    assert!(error.starts_with("the saved chain is damaged"), "{error}");
+    let huge = u64::MAX.to_string();
+    for (name, from, to) in
+        [("steps", "41", "57"), ("steps", "41", &huge), ("ensembles", "2", &huge)]
+    {
+        let cut = text.replacen(&format!("\"{name}\":{from}"), &format!("\"{name}\":{to}"), 1);
+        assert_ne!(cut, text, "{name}");
+        let mut damaged: Chain = serde_json::from_str(&cut).unwrap();
+        let error = damaged.advance(&data, 1).unwrap_err().to_string();
+        assert!(error.starts_with("the saved chain is damaged"), "{error}");
+    }
     let mut other = line();
     other.parameters[1].name = "c".into();
     let error = read.advance(&other, 1).unwrap_err().to_string();

@@ -2,7 +2,7 @@
 
 use crate::Shot;
 use crate::error::{MeasureError, Result};
-use crate::signal::PulseKind;
+use crate::signal::{Picks, PulseKind};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use std::collections::{HashMap, HashSet};
 use std::ffi::OsString;
@@ -175,6 +175,19 @@ impl ListEntry {
         Some(MeasureError::List(format!(
             "the {kind} pick of {time_s} s (line {} of the table of shots) lies outside {source}, which \
              lasts from 0 to {duration_s:.9} s",
+            self.line
+        )))
+    }
+
+    /// Error of pulses, some picked by hand, that do not follow each other as a wave passes.
+    pub(crate) fn out_of_order(&self, source: &str, picks: &Picks) -> Option<MeasureError> {
+        let time = |kind| picks.pulse(kind).map(|pulse| (kind, pulse.time_s));
+        let times: Vec<_> = PulseKind::ALL.into_iter().filter_map(time).collect();
+        let pair = times.windows(2).find(|pair| pair[1].1 <= pair[0].1)?;
+        let [(before, before_s), (after, after_s)] = [pair[0], pair[1]];
+        Some(MeasureError::List(format!(
+            "the {after} pulse at {after_s} s is not after the {before} pulse at {before_s} s in {source} \
+             (picks of line {} of the table of shots): pulses pass as incident, wall, reflected",
             self.line
         )))
     }

@@ -121,10 +121,11 @@ impl Shot {
         }
         if let Some(entry) = entry.filter(|entry| entry.picks_s.iter().any(Option::is_some)) {
             let sigma_s = entry.pick_error_s.unwrap_or(self.interval_s);
-            match entry.pick_outside(&self.source, self.duration_s) {
-                Some(error) => self.flight = Err(error),
-                None => self.pick_by_hand(entry.picks_s, sigma_s, options.measuring.calibration),
-            }
+            let error = entry.pick_outside(&self.source, self.duration_s).or_else(|| {
+                self.pick_by_hand(entry.picks_s, sigma_s, options.measuring.calibration);
+                entry.out_of_order(&self.source, &self.flight.as_ref().ok()?.picks)
+            });
+            self.flight = error.map_or(self.flight.clone(), Err);
         }
     }
 

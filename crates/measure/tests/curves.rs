@@ -484,7 +484,7 @@ fn picks_by_hand_outside_the_record_are_refused() {
     push(&mut writer, 1, 0.5, &samples(700.0, 9000.0, 1));
     writer.finish().unwrap();
     // Of 4 ms.
-    let text = "file,shot,wall pick\nseries.h5,0,9\nseries.h5,1,3.9e-3\n";
+    let text = "file,shot,wall pick,reflected pick\nseries.h5,0,9,\nseries.h5,1,3.8e-3,3.9e-3\n";
     let list = Some(ShotList::parse(text).unwrap());
     let measured = measure(&[path], &Options { list, ..Options::default() }, &());
     assert_eq!(measured.shots[0].reasons(true), ["no-time"]);
@@ -494,6 +494,30 @@ fn picks_by_hand_outside_the_record_are_refused() {
         assert!(reported.contains(part), "{reported}");
     }
     assert!(measured.shots[0].flags().contains(reported.as_str()));
+}
+
+#[test]
+fn picks_by_hand_that_do_not_follow_each_other_as_the_wave_passes_are_refused() {
+    let folder = folder("by-hand-order");
+    let path = folder.join("series.h5");
+    let mut writer = SeriesWriter::create(&path, &info("dry", &[])).unwrap();
+    (0..4).for_each(|shot| push(&mut writer, shot, 0.5, &samples(700.0, 9000.0, shot)));
+    writer.finish().unwrap();
+    // The program's own incident pulse is at 0.5 ms.
+    let text = "file,shot,incident pick,wall pick,reflected pick\nseries.h5,0,1.2e-3,6e-4,\n\
+                series.h5,1,,4e-4,\nseries.h5,2,5e-4,1.2e-3,1.2e-3\nseries.h5,3,5e-4,1.2e-3,2e-3\n";
+    let list = Some(ShotList::parse(text).unwrap());
+    let measured = measure(&[path], &Options { list, ..Options::default() }, &());
+    for shot in 0..3 {
+        assert_eq!(measured.shots[shot].reasons(true), ["no-time"]);
+    }
+    assert!(measured.shots[3].flight.is_ok());
+    let [first, mixed, equal] = [0, 1, 2].map(|shot| &*measured.unmatched[shot]);
+    for part in ["wall pulse at 0.0006 s", "incident pulse at 0.0012 s", "shot 0", "line 2 "] {
+        assert!(first.contains(part), "{first}");
+    }
+    assert!(mixed.contains("wall pulse at 0.0004 s is not after the incident"), "{mixed}");
+    assert!(equal.contains("reflected pulse at 0.0012 s is not after the wall"), "{equal}");
 }
 
 /// A shot whose incident pulse has two equal maxima.

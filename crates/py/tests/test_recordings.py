@@ -47,6 +47,17 @@ def test_recordings_open_in_h5py(records):
         assert len(file.keys()) > 0
 
 
+def test_speeds_of_a_measurement_are_a_coordinate_where_they_are_known(records, tmp_path):
+    measured = hc.measure(records, rig=SMALL)
+    data = measured.to_xarray()
+    assert data["tof_incident_s"].coords["speed_m_s"].values.tolist() == measured["speed_m_s"].tolist()
+    assert data["speed_m_s"].attrs["units"] == "m/s" and data.groupby("speed_m_s").mean(...)["tof_incident_s"].notnull().any()
+    time_s = 1e-6 * np.arange(3000)
+    bells = sum(height * np.exp(-(((time_s - at) / 2e-5) ** 2)) for at, height in ((6e-4, 1.0), (1.36e-3, 1.6), (2.16e-3, 0.5)))
+    unknown = hc.measure(bells + np.random.default_rng(1).normal(0, 1e-3, 3000), rate=1e6)
+    assert "speed_m_s" not in unknown.to_xarray().coords and "speed_m_s" not in repr(unknown)
+
+
 def test_measurements_are_those_of_the_command_line(cli, records):
     reported = cli("measure", records, "--rig", SMALL)
     found = hc.measure(records, rig=SMALL)

@@ -479,6 +479,7 @@ impl<'a> PreparedShot<'a> {
                 end_m_s: end.map(|(_, velocity_m_s)| velocity_m_s),
                 end_s: end.map(|(time_s, _)| time_s),
             }),
+            hardest: outcome.hardest,
             budget: outcome.budget,
             trace,
             finished: outcome.finished,

@@ -50,6 +50,8 @@ pub struct Shot {
     pub pulse_speed_beads_s: Option<f64>,
     /// The striker afterwards; `None` without a striker.
     pub rebound: Option<Rebound>,
+    /// The contact of the highest Hertz pressure and its largest force in N, when a budget was asked for.
+    pub hardest: Option<(usize, f64)>,
     /// Energy at the end, when a budget was asked for.
     pub budget: Option<Budget>,
     /// What was sampled, when that was asked for.
@@ -113,6 +115,7 @@ impl Shot {
             pulse_speed_beads_s: passed.map(|passage| between / passage.tof_incident_s()),
             passage,
             rebound: None,
+            hardest: None,
             budget: None,
             trace: None,
             duration_s,

@@ -230,6 +230,19 @@ impl System {
         a
     }
 
+    /// K²/R*³ of each contact: its Hertz pressure's cube at one force; 0 where no contact is.
+    pub(crate) fn pressure_factors(&self) -> Vec<f64> {
+        let (mut kinds, mut factor) = (self.kinds.iter().peekable(), 0.0);
+        let of_contact = |contact: usize| {
+            if let Some((_, pair)) = kinds.next_if(|(first, _)| *first <= contact) {
+                let found: f64 = pair.hertz_stiffness().powi(2) / pair.radius_m.powi(3);
+                factor = if found.is_finite() { found } else { 0.0 };
+            }
+            if self.has_contact(contact) { factor } else { 0.0 }
+        };
+        (0..self.contacts()).map(of_contact).collect()
+    }
+
     /// Signals of a sensor up to this are none.
     pub(crate) fn silence(&self, sensor: Sensor) -> f64 {
         match sensor {

@@ -9,6 +9,7 @@ mod energy;
 mod error_control;
 mod forces;
 mod gate;
+mod hardest;
 mod meter;
 mod outcome;
 mod rk4;

@@ -46,6 +46,9 @@ pub struct Outcome {
     pub displacement_m: Vec<f64>,
     /// Energy terms at the end, when a budget was asked for.
     pub budget: Option<Budget>,
+    /// The contact of the highest Hertz pressure and its largest force in N, with the one at rest, when a
+    /// budget was asked for.
+    pub hardest: Option<(usize, f64)>,
     /// What it cost.
     pub work: Work,
 }

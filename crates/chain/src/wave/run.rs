@@ -3,6 +3,7 @@
 use super::dense::{Piece, StageWeights};
 use super::forces::{Gates, Pass};
 use super::gate::{Event, GateWatch};
+use super::hardest::HardestContact;
 use super::meter::Meter;
 use super::outcome::{Flow, Limits, Observer, Outcome, SolveError, Work};
 use super::settings::{check, most_passes};
@@ -46,6 +47,7 @@ pub(super) struct Wave<'a> {
     pub(super) pass: Pass,
     pub(super) watch: GateWatch,
     pub(super) meter: Option<Meter>,
+    hardest: Option<HardestContact>,
     /// The long step that slow bodies take beside short ones.
     pub(super) slow: LongStep,
     pub(super) gates: Gates,
@@ -84,6 +86,7 @@ impl<'a> Wave<'a> {
             pass: Pass::new(system),
             watch: GateWatch::new(system, tolerance),
             meter: limits.budget.then(|| Meter::new(system, &state, table.stages())),
+            hardest: limits.budget.then(|| HardestContact::new(system)),
             a: vec![bodies(); table.stages()],
             x: state.x.clone(),
             v: state.v.clone(),
@@ -184,6 +187,12 @@ impl<'a> Wave<'a> {
             Control::Adaptive { tolerance } => self.adaptive_step(tolerance)?,
         };
         let finished = self.show(h, observers);
+        if let Some(mut hardest) = self.hardest.take() {
+            let contacts = self.contacts();
+            let forces = &self.pass.dynamic[contacts.start + 1..=contacts.end];
+            hardest.step(&self.piece(h), forces, contacts);
+            self.hardest = Some(hardest);
+        }
         self.accept(h);
         Ok(finished)
     }
@@ -388,6 +397,7 @@ impl<'a> Wave<'a> {
             budget: self
                 .meter
                 .map(|meter| meter.budget(self.system, &self.state, pending.as_ref())),
+            hardest: self.hardest.and_then(|hardest| hardest.found()),
             velocity_m_s: self.state.v,
             displacement_m: self.state.x,
             work: self.work,

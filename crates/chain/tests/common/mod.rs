@@ -16,6 +16,7 @@ pub const STEEL: Material = Material {
     poisson_ratio: 0.3,
     shear_viscosity_pa_s: 3.2e4,
     bulk_viscosity_pa_s: 3.2e4,
+    yield_strength_pa: None,
 };
 
 pub const BALL: Bead = Bead { radius_m: 6.35e-3, mass_kg: 8.54e-3, material: STEEL };

@@ -48,6 +48,7 @@ fn material() -> impl Strategy<Value = Material> {
         poisson_ratio,
         shear_viscosity_pa_s: eta * young_modulus_pa / 213e9,
         bulk_viscosity_pa_s: eta * young_modulus_pa / 213e9,
+        yield_strength_pa: None,
     })
 }
 

@@ -193,6 +193,10 @@ pub struct FitOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
+    /// Replace files of an earlier run
+    #[arg(long)]
+    #[serde(skip_serializing)]
+    pub force: bool,
 }
 
 /// Recordings whose pulses are fitted whole.
@@ -345,6 +349,10 @@ pub struct DesignOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
+    /// Replace files of an earlier run
+    #[arg(long)]
+    #[serde(skip_serializing)]
+    pub force: bool,
 }
 
 /// Options of `gauge`.
@@ -422,6 +430,10 @@ pub struct GaugeOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
+    /// Replace files of an earlier run
+    #[arg(long)]
+    #[serde(skip_serializing)]
+    pub force: bool,
 }
 
 names! {

@@ -56,6 +56,10 @@ pub struct MeasureOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
+    /// Replace files of an earlier run
+    #[arg(long)]
+    #[serde(skip_serializing)]
+    pub force: bool,
 }
 
 /// Options of `live`.

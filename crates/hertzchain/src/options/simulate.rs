@@ -105,7 +105,7 @@ pub struct ShotOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
-    /// Replace what an earlier shot has left in the folder
+    /// Replace files of an earlier run
     #[arg(long)]
     #[serde(skip_serializing)]
     pub force: bool,
@@ -189,6 +189,10 @@ pub struct SweepOptions {
     #[arg(long, short, value_name = "DIR")]
     #[serde(skip_serializing)]
     pub out: Option<PathBuf>,
+    /// Replace files of an earlier run
+    #[arg(long)]
+    #[serde(skip_serializing)]
+    pub force: bool,
     /// Only the i-th of n parts, for several machines, as one file in --out, unless it is there;
     /// `hertzchain merge` puts them together
     #[arg(long, value_name = "i/n", requires = "out", conflicts_with = "json")]

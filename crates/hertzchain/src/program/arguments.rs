@@ -90,6 +90,9 @@ pub(crate) struct Merge {
     /// Folder to write the whole into: the files of a run that was never cut
     #[arg(long, short, value_name = "DIR")]
     pub out: PathBuf,
+    /// Replace files of an earlier run
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[cfg(feature = "explore")]
@@ -126,6 +129,9 @@ pub(crate) struct Reproduce {
     /// Folder to write into
     #[arg(long, short, value_name = "DIR", default_value = "reproduction")]
     pub out: PathBuf,
+    /// Replace files of an earlier run
+    #[arg(long)]
+    pub force: bool,
     /// Also scan what the paper leaves open: which claims hold in which reading;
     /// tries every combination of the switches that move a verdict, up to an hour on
     /// two cores, and reports that before it begins

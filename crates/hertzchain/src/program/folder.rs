@@ -11,12 +11,16 @@ const DPI: f64 = 300.0;
 
 /// Files for a folder that was found writable; they appear in it together.
 #[derive(Debug)]
-pub(crate) struct Folder(Files);
+pub(crate) struct Folder {
+    files: Files,
+    /// Whether files of earlier runs may be replaced.
+    replace: bool,
+}
 
 impl Folder {
-    /// Makes the folder if need be and checks that it can be written to,
-    /// before anything is computed for it.
-    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
+    /// Makes the folder if need be and checks, before anything is computed for it, that it can be
+    /// written to and has no file of these names, unless files may be replaced.
+    pub(crate) fn open(path: &Path, names: &[&str], replace: bool) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
             return Err(Failure::User(format!(
                 "cannot write into {}: it is a file; --out names a folder, which is made if it \
@@ -26,20 +30,9 @@ impl Folder {
         }
         let refused =
             |error| Failure::User(format!("cannot write into {}: {error}", path.display()));
-        Files::within(path).map(Self).map_err(refused)
-    }
-
-    /// Rejects a folder with a file of this name, which another run has written, unless it may be
-    /// replaced.
-    pub(crate) fn keeping(self, name: &str, replace: bool) -> Result<Self, Failure> {
-        let path = self.0.folder().join(name);
-        match path.exists() && !replace {
-            true => Err(Failure::User(format!(
-                "{} is there already, from another run; name another folder by --out, or replace it by --force",
-                path.display()
-            ))),
-            false => Ok(self),
-        }
+        let free = |name: &&str| require_free(&path.join(name), "--out", replace);
+        names.iter().try_for_each(free)?;
+        Ok(Self { files: Files::within(path).map_err(refused)?, replace })
     }
 
     /// Writes a file that gets its name with all others.
@@ -53,12 +46,13 @@ impl Folder {
         name: &str,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        let written = self.0.write(name, write);
+        require_free(&self.path().join(name), "--out", self.replace)?;
+        let written = self.files.write(name, write);
         written.map_err(|error| self.unwritable(name, &error))
     }
 
     fn unwritable(&self, what: &str, error: &io::Error) -> Failure {
-        let (path, left) = (self.0.folder().join(what), "its files are those of before");
+        let (path, left) = (self.path().join(what), "its files are those of before");
         Failure::Ours(format!("cannot write {}: {error}; {left}", path.display()))
     }
 
@@ -74,12 +68,16 @@ impl Folder {
     }
 
     pub(crate) fn path(&self) -> &Path {
-        self.0.folder()
+        self.files.folder()
     }
 
     /// The folder that an option asks for, if it asks for one.
-    pub(crate) fn asked(path: Option<&Path>) -> Result<Option<Self>, Failure> {
-        path.map(Self::open).transpose()
+    pub(crate) fn asked(
+        path: Option<&Path>,
+        names: &[&str],
+        replace: bool,
+    ) -> Result<Option<Self>, Failure> {
+        path.map(|path| Self::open(path, names, replace)).transpose()
     }
 
     /// Gives all files their names, and reports them.
@@ -89,14 +87,25 @@ impl Folder {
     }
 
     pub(crate) fn names(&self) -> Vec<&str> {
-        self.0.names().collect()
+        self.files.names().collect()
     }
 
     /// Gives all files their names; returns them, one path a line.
     pub(crate) fn finish(self) -> Result<String, Failure> {
-        let files = self.0.finish();
+        let files = self.files.finish();
         let files = files.map_err(|error| Failure::Ours(format!("cannot name a file: {error}")))?;
         let lines = files.iter().map(|path| format!("  {}\n", path.display()));
         Ok(lines.collect())
+    }
+}
+
+/// Rejects a file that is there already, from another run, unless it may be replaced.
+pub(crate) fn require_free(path: &Path, option: &str, replace: bool) -> Result<(), Failure> {
+    match path.exists() && !replace {
+        true => Err(Failure::User(format!(
+            "{} is there already, from another run; give another name by {option}, or replace it by --force",
+            path.display()
+        ))),
+        false => Ok(()),
     }
 }

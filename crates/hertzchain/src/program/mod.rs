@@ -13,7 +13,7 @@ mod words;
 use self::{
     arguments::{Program, Verb},
     failure::{Failure, print_assumed, print_stored},
-    folder::Folder,
+    folder::{Folder, require_free},
     format::{Style, digits, with_error},
     notes::{Counter, with_notes},
     print::heading,

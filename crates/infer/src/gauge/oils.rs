@@ -59,6 +59,7 @@ impl Oil {
             poisson_ratio: law(self.poisson_prefactor, self.poisson_exponent),
             shear_viscosity_pa_s: viscosity_pa_s,
             bulk_viscosity_pa_s: viscosity_pa_s,
+            yield_strength_pa: None,
         };
         let pair = BeadPair {
             left: material,

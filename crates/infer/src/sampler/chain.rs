@@ -80,6 +80,9 @@ pub struct Chain {
 /// them by 10⁻⁶, other data by units.
 const SAME: f64 = 0.05;
 
+/// More than any machine steps; their half steps are counted too.
+const MOST_STEPS: u64 = 1 << 62;
+
 impl Chain {
     /// Walkers around a fit's optimum.
     ///
@@ -183,14 +186,16 @@ impl Chain {
     pub(super) fn check(&self) -> Result<(), InferError> {
         let (walkers, parameters) = (self.places.len(), self.names.len());
         let stored = self.steps.checked_div(self.keep_every).unwrap_or(0) as usize;
+        let samples = stored.checked_mul(walkers).and_then(|all| all.checked_mul(parameters));
         let is_whole = self.ensembles > 0
             && parameters > 0
             && self.keep_every > 0
-            && walkers >= 4 * self.ensembles
+            && self.steps < MOST_STEPS
+            && walkers / 4 >= self.ensembles
             && walkers.is_multiple_of(2 * self.ensembles)
             && self.places.iter().all(|place| place.len() == parameters)
             && self.ln_densities.len() == walkers
-            && self.samples.len() == stored * walkers * parameters;
+            && samples == Some(self.samples.len());
         match is_whole {
             true => Ok(()),
             false => InferError::input(

@@ -256,8 +256,8 @@ pub(crate) fn no_samples(file: &Path, names: &[String]) -> MeasureError {
         detail += &format!(", only {}", list(names));
     }
     if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mat")) {
-        detail += "; arrays, structs and cells of numbers are read, not objects, tables nor cells of \
-                   version 7.3: save these with -v7";
+        detail += "; arrays, structs and cells of numbers are read, not objects nor tables: save their \
+                   numbers as arrays";
     }
     MeasureError::Samples(file_name(file), detail)
 }

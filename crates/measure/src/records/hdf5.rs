@@ -1,5 +1,8 @@
 //! HDF5: datasets of any program, and tables of results.
 
+mod names;
+
+use self::names::Names;
 use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, SampleTable};
 use crate::records::files::{exclusive, persist};
@@ -8,7 +11,7 @@ use crate::records::read::Raw;
 use crate::records::record::{Samples, converter_range_v};
 use crate::records::series;
 use crate::records::stored::{NumberKind, SampleSource, StoredNumber};
-use indexmap::IndexSet;
+use indexmap::IndexMap;
 use rust_hdf5::format::FormatContext;
 use rust_hdf5::format::messages::attribute::AttributeMessage;
 use rust_hdf5::{ByteOrder, DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
@@ -37,8 +40,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     if series::is_series(&open) {
         return series::open(file, &open, options);
     }
-    let mut names: IndexSet<String> = open.dataset_names().into_iter().collect();
-    names.retain(|name| is_numbers(&open, name));
+    let names = Names::of(&open).map_err(|e| MeasureError::malformed(file, "HDF5", damaged(&e)))?;
     let by_matlab = beginning(file, MATLAB.len() as u64);
     let by_matlab = by_matlab.is_ok_and(|bytes| bytes == MATLAB);
     match names.is_empty() {
@@ -51,23 +53,6 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
 
 /// How MATLAB's user block begins; its columns are HDF5's rows, its texts whole numbers.
 const MATLAB: &[u8] = b"MATLAB 7.3";
-const CLASS: &str = "MATLAB_class";
-/// Its classes that are no numbers, and groups for its own use.
-const NO_NUMBERS: &[&str] = &["char", "cell", "struct", "logical", "function_handle"];
-const INTERNAL: &[&str] = &["#refs#", "#subsystem#"];
-
-fn is_numbers(open: &H5File, name: &str) -> bool {
-    let Ok(dataset) = open.dataset(name) else { return true };
-    let class = dataset.attr(CLASS).and_then(|class| class.read_string());
-    let no_numbers = class.is_ok_and(|class| NO_NUMBERS.contains(&class.as_str()));
-    let kind = dataset.datatype();
-    !no_numbers
-        && !INTERNAL.iter().any(|group| name.trim_start_matches('/').starts_with(group))
-        && matches!(
-            kind,
-            Ok(DatatypeMessage::FixedPoint { .. } | DatatypeMessage::FloatingPoint { .. })
-        )
-}
 
 fn beginning(file: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
@@ -191,13 +176,15 @@ pub(crate) fn unit(name: &str) -> &'static str {
 struct Datasets {
     file: PathBuf,
     open: H5File,
-    names: IndexSet<String>,
+    /// Where the dataset of each name is.
+    names: IndexMap<String, String>,
     by_matlab: bool,
 }
 
 impl Datasets {
     fn dataset(&self, name: &str) -> Result<H5Dataset> {
-        let found = dataset_of(&self.open, name, self.names.contains(name));
+        let path = self.names.get(name);
+        let found = dataset_of(&self.open, path.map_or(name, |path| path), path.is_some());
         found.map_err(|error| refused(&self.file, name, &error))
     }
 
@@ -221,7 +208,7 @@ impl Arrays for Datasets {
     }
 
     fn names(&self) -> Vec<String> {
-        self.names.iter().cloned().collect()
+        self.names.keys().cloned().collect()
     }
 
     fn shape(&self, name: &str) -> Result<Vec<usize>> {
@@ -251,7 +238,7 @@ impl Arrays for Datasets {
 
     fn stated_s(&self) -> Option<f64> {
         let number = |names: &[&str]| {
-            let datasets = self.names.iter().filter_map(|name| self.dataset(name).ok());
+            let datasets = self.names.keys().filter_map(|name| self.dataset(name).ok());
             let values = |of: &H5Dataset| {
                 let mut there = of.attr_names().unwrap_or_default();
                 there.retain(|name| names.contains(&&*name.to_lowercase()));

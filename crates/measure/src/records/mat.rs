@@ -27,7 +27,7 @@ const MOST_HEADER: usize = 4096;
 const MOST_ARRAYS: usize = 100_000;
 
 /// Most cells and structs in which an array is.
-const DEEPEST: usize = 8;
+pub(super) const DEEPEST: usize = 8;
 
 /// Whether a file that begins so is of version 4 or 5.
 pub(crate) fn is_mat(begins: &[u8]) -> bool {
@@ -161,7 +161,7 @@ impl Matrices<'_> {
 }
 
 /// Of a table of cells, rows are shots.
-fn cell_name(name: &str, shape: &[usize], at: usize) -> String {
+pub(super) fn cell_name(name: &str, shape: &[usize], at: usize) -> String {
     match *shape {
         [rows, columns] if rows > 1 && columns > 1 => {
             format!("{name}{{{}}}/{}", at % rows + 1, at / rows + 1)

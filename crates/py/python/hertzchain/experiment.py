@@ -49,8 +49,8 @@ class Material:
         Young modulus Y in Pa.
     poisson_ratio : float
         Poisson ratio ν.
-    density : float or str, optional
-        In kg/m³; needed where beads have no mass.
+    density, yield_strength : float or str, optional
+        In kg/m³, needed where beads have no mass; in Pa, to report first yield.
     shear_viscosity, bulk_viscosity : float or str, optional
         η₁ and η₂ in Pa s; η₂ is η₁ where it is left out.
     """
@@ -60,6 +60,7 @@ class Material:
     density: Quantity | None = None
     shear_viscosity: Quantity | PowerOfSpeed | None = None
     bulk_viscosity: Quantity | PowerOfSpeed | None = None
+    yield_strength: Quantity | None = None
 
 
 @dataclass(frozen=True)

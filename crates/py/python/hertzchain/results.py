@@ -659,8 +659,7 @@ class MeasureResult(Result):
     tables : dict of str to str
         The program's tables as text: ``shots.csv``, ``speeds.csv`` …
     details : dict
-        All of ``measure --json``: beside these ratios of cases, notes, the amplifier's
-        low-pass, what table and recordings do not find in each other (``unmatched``).
+        All of ``measure --json``: also ratios, notes, the low-pass, lines of the table without recordings (``unmatched``).
     refused : list of str
         Files that could not be read.
     verdict : str or None
@@ -668,7 +667,7 @@ class MeasureResult(Result):
     """
 
     _dimension = "record"
-    _printed = ("file", "case", "speed_m_s", "tof_incident_s", "tof_reflected_s")
+    _printed = ("file", "case", "tof_incident_s", "tof_reflected_s")
 
     cases: dict[str, Case]
     tables: dict[str, str]
@@ -677,6 +676,9 @@ class MeasureResult(Result):
     def _columns(self) -> dict[str, NDArray[Any] | list[str]]:
         titles, *rows = csv.reader(io.StringIO(self.tables["shots.csv"]))
         return {title: _numbers([row[at] for row in rows]) for at, title in enumerate(titles)}
+
+    def _coordinates(self) -> tuple[str, ...]:
+        return ("speed_m_s",) if np.isfinite(np.asarray(self._columns()["speed_m_s"], float)).any() else ()
 
     def save(self, path: str | os.PathLike[str]) -> list[Path]:
         """Writes the tables into a folder; tables without rows are left out.
@@ -763,8 +765,7 @@ class Parameter(Result):
 class FitResult(Result):
     """A fit: parameters with errors, goodness of fit, what is not determined.
 
-    Its table is the measured values beside the fitted ones; xarray gets the parameters,
-    their covariance and samples of a posterior.
+    Its table is the measured values beside the fitted ones; xarray gets the parameters, their covariance and samples of a posterior.
 
     Attributes
     ----------
@@ -773,10 +774,9 @@ class FitResult(Result):
     covariance, correlation : ndarray, shape (parameters, parameters)
         In products of the parameters' SI units; and without units.
     rows : dict of str to ndarray, shape (values,)
-        Measured beside fitted. Of times of flight: ``speed_m_s``, ``observable``, ``measured``,
-        ``error``, ``fitted``, ``fitted_error`` (in s, ratios in 1), ``residual`` in standard
-        errors. Of whole pulses, a mean of samples each: ``source``, ``channel``, ``time_s`` after
-        the incident maximum, ``measured_v``, ``error_v``, ``fitted_v``.
+        Of times of flight: ``speed_m_s``, ``observable``, ``measured``, ``error``, ``fitted``, ``fitted_error`` (in s, ratios
+        in 1), ``residual`` in standard errors. Of whole pulses, a mean of samples each: ``source``, ``channel``,
+        ``time_s`` after the incident maximum, ``measured_v``, ``error_v``, ``fitted_v``.
     samples : ndarray of shape (samples, parameters) or None
         Of the posterior in SI, if that was sampled and has converged.
     chi_square : dict or None
@@ -784,8 +784,7 @@ class FitResult(Result):
     converged : bool
         Whether the descent came to a minimum.
     details : dict
-        All of ``fit.json``: goodness of fit, identifiability, profiles,
-        posterior, comparison of models.
+        All of ``fit.json``: goodness of fit, identifiability, profiles, posterior, comparison of models.
     """
 
     parameters: dict[str, Parameter]

@@ -106,6 +106,9 @@ fn material(parts: &mut Group, material: &Material) {
     }
     parts.number("Young modulus", material.young_modulus_pa, "Pa");
     parts.number("Poisson ratio", material.poisson_ratio, "");
+    if let Some(strength_pa) = material.yield_strength_pa {
+        parts.number("yield strength", strength_pa, "Pa");
+    }
     let (shear, bulk) = (material.shear_viscosity_pa_s, material.bulk_viscosity_pa_s);
     if shear != 0.0 || bulk != 0.0 {
         parts.number("shear viscosity", shear, "Pa s");

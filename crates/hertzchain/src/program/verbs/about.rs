@@ -42,7 +42,8 @@ pub(crate) fn man(out: Option<&Path>) -> Result<(), Failure> {
     let Some(out) = out else {
         return print::print(&String::from_utf8_lossy(&page(program)?));
     };
-    let mut folder = Folder::open(out)?;
+    // Pages are this version's, and no results of a run.
+    let mut folder = Folder::open(out, &[], true)?;
     folder.write("hertzchain.1", &page(program.clone())?)?;
     for verb in program.get_subcommands().filter(|verb| verb.get_name() != "help") {
         let name = format!("hertzchain-{}", verb.get_name());

@@ -12,6 +12,8 @@ use std::path::Path;
 
 const SHOWN: usize = 15;
 
+const FILE: &str = "design.json";
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = arguments.data.as_deref().unwrap_or(Path::new(""));
     let data = inference::data(file, &arguments.measured, None)?;
@@ -22,7 +24,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     print_stored([&model], &arguments.modelled.set);
     let problem = inference::problem(model, data, &arguments.freed)?;
     let targets = design::targets(&problem, arguments)?;
-    let folder = Folder::asked(arguments.out.as_deref())?;
+    let folder = Folder::asked(arguments.out.as_deref(), &[FILE], arguments.force)?;
     let run_design = with_notes(arguments.modelled.threads, || {
         design::run_design(&problem, &targets, &speeds, arguments)
     })?;
@@ -31,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let assumed = inference::assumed_model(&arguments.modelled);
     print::result(arguments.json, &mut all, assumed, || text(&problem, &run_design))?;
     folder.map_or(Ok(()), |mut folder| {
-        folder.write("design.json", format!("{all:#}\n").as_bytes())?;
+        folder.write(FILE, format!("{all:#}\n").as_bytes())?;
         folder.tables(&design::tables(&all))?;
         folder.finish_and_report()
     })

@@ -13,6 +13,8 @@ use hertzchain_experiment::Experiment;
 use hertzchain_infer::{CurveProblem, Data, Problem, Surrogate};
 use std::path::Path;
 
+const FIT: &str = "fit.json";
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = match &arguments.data[..] {
         [one] if inference::is_table(one, arguments.recorded.describes_files())? => one,
@@ -25,7 +27,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let models = problem.curves.iter().map(|curve| &curve.model);
     print_stored(models, &arguments.modelled.set);
     pace(&problem, arguments);
-    let folder = Folder::asked(arguments.out.as_deref())?;
+    let folder = open_folder(arguments)?;
     let fit_result =
         with_notes(arguments.modelled.threads, || fit::fit_result(problem, arguments))?;
     let mut all = fit::json(&fit_result, arguments);
@@ -33,6 +35,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let text = || report::text(&fit_result, arguments);
     print::result(arguments.json, &mut all, assumed, text)?;
     folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
+}
+
+fn open_folder(arguments: &Arguments) -> Result<Option<Folder>, Failure> {
+    let replace = arguments.force || arguments.resume;
+    Folder::asked(arguments.out.as_deref(), &[FIT, fit::CHAIN], replace)
 }
 
 /// DATA and further tables, each with its model.
@@ -81,7 +88,7 @@ fn write_inferred(
     fit_result: &Inferred,
     (all, tables): (&serde_json::Value, &[(&'static str, String)]),
 ) -> Result<(), Failure> {
-    folder.write("fit.json", format!("{all:#}\n").as_bytes())?;
+    folder.write(FIT, format!("{all:#}\n").as_bytes())?;
     folder.tables(tables)?;
     folder.figure("singular-values", &uncertainty::singular_values(fit_result))?;
     match &fit_result.more {

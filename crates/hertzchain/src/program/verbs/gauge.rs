@@ -9,6 +9,8 @@ use crate::options::GaugeOptions as Arguments;
 use crate::program::{Failure, Folder, failure, print, print_assumed, with_notes};
 use std::path::Path;
 
+const FILE: &str = "gauge.json";
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let [wet_file, dry_file] =
         [&arguments.wet, &arguments.dry].map(|file| file.as_deref().unwrap_or(Path::new("")));
@@ -24,7 +26,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.model.is_some() || arguments.preset.is_some(),
         arguments.dry_model.is_some() || arguments.dry_preset.is_some(),
     );
-    let folder = Folder::asked(arguments.out.as_deref())?;
+    let folder = Folder::asked(arguments.out.as_deref(), &[FILE], arguments.force)?;
     let chains = [&wet_model, &dry_model];
     let run_gauge =
         with_notes(arguments.threads, || gauge::gauge([wet, dry], chains, oils, arguments))?;
@@ -39,7 +41,7 @@ fn write(
     run_gauge: &GaugeResult,
     all: &serde_json::Value,
 ) -> Result<(), Failure> {
-    folder.write("gauge.json", format!("{all:#}\n").as_bytes())?;
+    folder.write(FILE, format!("{all:#}\n").as_bytes())?;
     folder.tables(&gauge::tables(run_gauge, all))?;
     if run_gauge.rows.iter().any(|row| row.contact.is_ok()) {
         folder.figure("contacts", &pictures::contacts(run_gauge))?;

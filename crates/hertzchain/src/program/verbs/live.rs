@@ -3,7 +3,7 @@
 mod next;
 
 use self::next::Proposals;
-use super::measure::{summary, tables};
+use super::measure::{MEASURED, summary, tables};
 use crate::live::LiveMeasurement;
 use crate::measure::{self, MeasureResult};
 use crate::options::{LiveOptions, MeasureOptions, ReadingOptions, RowsAre};
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
     let mut live = LiveMeasurement::new(&folder, &measured)?;
     failure::print_improbable(&measure::rig(&measured)?);
     if let Some(out) = &measured.out {
-        Folder::open(out)?;
+        Folder::open(out, &[MEASURED], measured.force || continues(out, &folder))?;
     }
     print::note(&format!("measuring what comes into {}; Ctrl-C ends", folder.display()));
     let proposals = Proposals::start(arguments)?;
@@ -59,6 +59,16 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
         print::print(&summary::text(&shots, &curves, &measured.reference))?;
     }
     measure::evaluate(&shots)
+}
+
+/// Whether tables in the output folder are of recordings in the followed one.
+fn continues(out: &Path, followed: &Path) -> bool {
+    let text = fs::read(out.join(MEASURED)).unwrap_or_default();
+    let all: Value = serde_json::from_slice(&text).unwrap_or_default();
+    let is_followed = |shot: &Value| {
+        shot["file"].as_str().is_some_and(|file| Path::new(file).parent() == Some(followed))
+    };
+    all["shots"].as_array().is_some_and(|shots| shots.iter().all(is_followed))
 }
 
 struct Source {
@@ -179,7 +189,7 @@ fn report(
 ) -> Result<(), Failure> {
     let result = live.result();
     if let Some(out) = &measured.out {
-        let mut folder = Folder::open(out)?;
+        let mut folder = Folder::open(out, &[], true)?;
         tables(&mut folder, &result.shots, &result.curves)?;
         folder.finish()?;
     }

@@ -6,7 +6,7 @@ pub(super) mod summary;
 
 use crate::measure::{self, MeasureResult};
 use crate::options::MeasureOptions as Arguments;
-use crate::program::{Counter, Failure, Folder, failure, print};
+use crate::program::{Counter, Failure, Folder, failure, print, require_free};
 use hertzchain_measure::signal::Bandwidth;
 use hertzchain_measure::{
     Curves, Measurement, Note, Options, laws_csv, ratios_csv, speeds_csv, write_shots,
@@ -17,7 +17,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rig = measure::rig(arguments)?;
     failure::print_improbable(&rig);
     let options = Options { most_flagged, ..measure::options(arguments, rig.as_ref())? };
-    let folder = Folder::asked(arguments.out.as_deref())?;
+    let replace = arguments.force;
+    let folder = Folder::asked(arguments.out.as_deref(), &[MEASURED, SHOTS], replace)?;
+    let report = arguments.report.as_deref();
+    report.map_or(Ok(()), |path| require_free(path, "--report", replace))?;
     let counter = Counter::new("records", 0);
     let found = measure::measure_watched(&arguments.records, arguments, &options, &counter);
     counter.finish();
@@ -28,7 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         true => print::print_with(|out| measure::write_json(&measured, &curves, out))?,
         false => print::print(&summary::text(&measured, &curves, &arguments.reference))?,
     }
-    if let Some(path) = &arguments.report {
+    if let Some(path) = report {
         report::write(path, &measured, &curves)?;
     }
     if let Some(folder) = folder {
@@ -36,6 +39,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     measure::evaluate(&measured)
 }
+
+/// Everything, in the output folder.
+pub(super) const MEASURED: &str = "measured.json";
+
+const SHOTS: &str = "shots.csv";
 
 /// Most lines about the table of shots, which may be of other recordings.
 const MOST_LINES: usize = 20;
@@ -99,8 +107,8 @@ pub(super) fn tables(
     measured: &Measurement,
     curves: &Curves,
 ) -> Result<(), Failure> {
-    folder.write_with("shots.csv", |out| write_shots(&measured.shots, curves, out))?;
-    folder.write_with("measured.json", |out| measure::write_json(measured, curves, out))?;
+    folder.write_with(SHOTS, |out| write_shots(&measured.shots, curves, out))?;
+    folder.write_with(MEASURED, |out| measure::write_json(measured, curves, out))?;
     if !(curves.cases.is_empty() && curves.unmeasured.is_empty()) {
         folder.write("speeds.csv", speeds_csv(curves).as_bytes())?;
     }

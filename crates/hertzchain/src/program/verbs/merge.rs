@@ -13,7 +13,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folders: Vec<&Path> = arguments.folders.iter().map(AsRef::as_ref).collect();
     match folders.iter().find(|folder| folder.join(CAMPAIGN_FILE).is_file()) {
         Some(folder) => campaign(folder, &folders, &arguments.out),
-        None => sweep(&folders, &arguments.out),
+        None => sweep(&folders, arguments),
     }
 }
 
@@ -31,9 +31,9 @@ fn campaign(first: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure> 
     ))
 }
 
-fn sweep(folders: &[&Path], out: &Path) -> Result<(), Failure> {
+fn sweep(folders: &[&Path], arguments: &Arguments) -> Result<(), Failure> {
     let part = BatchResult::gather(folders)?;
-    let folder = Folder::open(out)?;
+    let folder = Folder::open(&arguments.out, &[reported::SWEEP], arguments.force)?;
     shard::report_warnings(&part);
     reported::show(&part)?;
     reported::write(folder, &part)?;

@@ -39,11 +39,10 @@ fn announce(plan: &Plan) {
 }
 
 fn open_folder(arguments: &Arguments) -> Result<Option<Folder>, Failure> {
-    let folder = match (&arguments.out, arguments.animate) {
-        (Some(out), _) => Folder::open(out)?,
-        (None, true) => Folder::open(Path::new("."))?,
+    let (folder, main) = match (&arguments.out, arguments.animate) {
+        (Some(out), _) => (out.as_path(), traces::SHOT),
+        (None, true) => (Path::new("."), traces::ANIMATION),
         (None, false) => return Ok(None),
     };
-    let main = if arguments.out.is_some() { traces::SHOT } else { traces::ANIMATION };
-    folder.keeping(main, arguments.force).map(Some)
+    Folder::open(folder, &[main], arguments.force).map(Some)
 }

@@ -16,7 +16,9 @@ use serde_json::json;
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = input::open(&arguments.input)?;
     let speeds = sweep::speeds(&experiment, arguments)?;
-    let folder = Folder::asked(arguments.out.as_deref())?;
+    // A shard is recognised by its name, and computed only once.
+    let replace = arguments.force || arguments.shard.is_some();
+    let folder = Folder::asked(arguments.out.as_deref(), &[reported::SWEEP], replace)?;
     let counter = Counter::new("shots", speeds.len() as u64);
     let batch = sweep::batch(&experiment, speeds, arguments)?;
     if let Some(shard) = arguments.shard {

@@ -3,8 +3,9 @@
 use super::{WAVE, all, assert_wave};
 use crate::common::{folder, python};
 use hertzchain_measure::records::{ReadOptions, read};
-use rust_hdf5::H5File;
+use rust_hdf5::{H5File, VarLenUnicode};
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 
 #[test]
@@ -96,15 +97,70 @@ scipy.io.savemat("empty.mat", {"shots": cells("one text", "another"), "fs": 1e6}
     assert!(error.contains("holds no samples, only fs"), "{error}");
 }
 
-#[test]
-fn cells_of_version_7_3_are_refused_with_what_to_do() {
-    let file = folder("matlab-references").join("cells.mat");
-    let open = H5File::options().userblock(512).create(&file).unwrap();
-    let rate = open.new_dataset::<f64>().shape([1]).create("fs").unwrap();
+/// A file as MATLAB writes version 7.3, but for its user block: datasets of waves in `#refs#`, their
+/// number the wave's, and objects that refer to them.
+fn referring(file: &Path, waves: usize) -> H5File {
+    let open = H5File::options().userblock(512).create(file).unwrap();
+    let rate = open.new_dataset::<f64>().shape([1, 1]).create("fs").unwrap();
     rate.write_raw(&[1e6]).unwrap();
+    let internal = open.create_group("#refs#").unwrap();
+    for number in 0..waves {
+        let volts: Vec<f64> = (0..200).map(|i| super::wave(number, i)).collect();
+        let data = internal.new_dataset::<f64>().shape([1, 200]).create(&format!("w{number}"));
+        data.unwrap().write_raw(&volts).unwrap();
+    }
+    open
+}
+
+fn refer(open: &H5File, name: &str, shape: [usize; 2], targets: &[&str], class: &str) {
+    let cells = open.new_dataset::<u64>().object_references().shape(shape).create(name).unwrap();
+    cells.write_object_references(targets).unwrap();
+    let attribute = cells.new_attr::<VarLenUnicode>().shape(()).create("MATLAB_class").unwrap();
+    attribute.write_string(class).unwrap();
+}
+
+fn ended(open: H5File, file: &Path) {
     open.close().unwrap();
+    let mut file = fs::OpenOptions::new().write(true).open(file).unwrap();
+    file.write_all(b"MATLAB 7.3 MAT-file, Platform: GLNXA64").unwrap();
+}
+
+#[test]
+fn cells_of_version_7_3_hold_shots_as_those_of_version_5() {
+    let folder = folder("matlab-references");
+    let [cells, table, within] = ["cells", "table", "within"].map(|name| folder.join(name));
+    let open = referring(&cells, 2);
+    refer(&open, "shots", [2, 1], &["/#refs#/w0", "/#refs#/w1"], "cell");
+    ended(open, &cells);
+    // MATLAB's columns are HDF5's rows: a row of the table is a shot.
+    let open = referring(&table, 4);
+    let of_columns = ["/#refs#/w0", "/#refs#/w1", "/#refs#/w2", "/#refs#/w1", "/#refs#/w2"];
+    refer(&open, "shots", [2, 3], &[&of_columns[..], &["/#refs#/w3"]].concat(), "cell");
+    ended(open, &table);
+    let open = referring(&within, 2);
+    refer(&open, "#refs#/first", [1, 1], &["/#refs#/w0"], "cell");
+    refer(&open, "#refs#/other", [1, 1], &["/#refs#/w1"], "cell");
+    refer(&open, "runs", [2, 1], &["/#refs#/first", "/#refs#/other"], "cell");
+    ended(open, &within);
+    for (file, shots, channels) in [(cells, 2, 1), (table, 3, 2), (within, 2, 1)] {
+        let records = all(&file, &ReadOptions::default());
+        assert_eq!((records.len(), records[0].channels.len()), (shots, channels), "{file:?}");
+        for (shot, record) in records.iter().enumerate() {
+            (0..channels).for_each(|channel| assert_wave(record, channel, shot + channel, 1.0));
+        }
+    }
+}
+
+#[test]
+fn cells_of_version_7_3_that_refer_to_themselves_hold_nothing() {
+    let file = folder("matlab-circle").join("circle.mat");
+    let open = referring(&file, 0);
+    refer(&open, "circle", [2, 1], &["/fs", "/fs"], "cell");
+    let circle = open.new_dataset::<u64>().object_references().shape([9, 9]).create("shots");
+    circle.unwrap().write_object_references(&["/shots"; 81]).unwrap();
+    ended(open, &file);
     let error = refusal(&file);
-    assert!(error.contains("only fs") && error.contains("-v7"), "{error}");
+    assert!(error.contains("holds no samples, only fs") && error.contains("as arrays"), "{error}");
 }
 
 fn refusal(file: &Path) -> String {

@@ -1,6 +1,6 @@
 //! Whole pulses of recordings to parameters.
 
-use super::{report, write_inferred};
+use super::{open_folder, report, write_inferred};
 use crate::fit::pulses::{Pulsed, REPORTED, Shown, fit_result, json, pulses_csv, recorded, shown};
 use crate::fit::tables_of_any;
 use crate::inference;
@@ -12,7 +12,7 @@ use serde_json::Value;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let recorded = recorded(arguments)?;
-    let folder = Folder::asked(arguments.out.as_deref())?;
+    let folder = open_folder(arguments)?;
     let fit_result = with_notes(arguments.modelled.threads, || fit_result(recorded, arguments))?;
     print_stored([&fit_result.problem.model], &arguments.modelled.set);
     let mut all = json(&fit_result, arguments);

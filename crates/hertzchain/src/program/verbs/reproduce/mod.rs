@@ -19,7 +19,7 @@ use terminal_size::terminal_size_of;
 
 pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
     // Whether it can be written to, before anything is computed for it.
-    let mut folder = Folder::open(&arguments.out)?;
+    let mut folder = Folder::open(&arguments.out, &[PROVENANCE], arguments.force)?;
     let options = match arguments.readings {
         true => ReproduceOptions::default().with_readings(),
         false => ReproduceOptions::default(),

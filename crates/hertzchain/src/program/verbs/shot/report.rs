@@ -144,17 +144,27 @@ fn pulses(style: Style, seen: &Passage) -> Rows {
     rows
 }
 
-/// The wall contact at the pulse's peak, and when its balls yield.
+/// The contact of the highest pressure, and when its balls yield.
 fn contact(style: Style, plan: &Plan, shot: &Shot) -> Option<(String, String)> {
-    let found = HertzContact::of_wall(style.units, plan, shot)?;
-    let brief = Style::brief(style.units);
+    let found = HertzContact::hardest(style.units, plan, shot)?;
+    let quantity = |value, unit| Style::brief(style.units).quantity(value, unit);
+    let [radius, pressure] = [(found.radius_m, "m"), (found.pressure_pa, "Pa")];
+    let needed = quantity(found.yield_strength_pa, "Pa");
+    let verdict = match found.material_yield_strength_pa {
+        Some(own) if own < found.yield_strength_pa => {
+            format!("yields, as {} is below {needed}", quantity(own, "Pa"))
+        }
+        Some(own) => format!("does not yield, as {} is above {needed}", quantity(own, "Pa")),
+        None => format!("balls of a yield strength below {needed} yield"),
+    };
     let text = format!(
-        "radius {}, largest pressure {}: balls of a yield strength below {} yield",
-        brief.quantity(found.radius_m, "m"),
-        brief.quantity(found.pressure_pa, "Pa"),
-        brief.quantity(found.yield_strength_pa, "Pa"),
+        "contact {} at {}: radius {}, largest pressure {}: {verdict}",
+        found.contact,
+        quantity(found.force_n, "N"),
+        quantity(radius.0, radius.1),
+        quantity(pressure.0, pressure.1),
     );
-    Some(("wall contact at its peak".to_owned(), text))
+    Some(("hardest contact".to_owned(), text))
 }
 
 fn energy(style: Style, budget: &Budget) -> Rows {

@@ -9,6 +9,9 @@ use hertzchain_experiment::Units;
 use hertzchain_sim::{BatchResult, COLUMNS, Column, Rows};
 use std::collections::HashSet;
 
+/// The table in the output folder.
+pub(crate) const SWEEP: &str = "sweep.csv";
+
 /// What a column is called, its unit, the size of the unit, and which it is.
 type Shown = (&'static str, &'static str, f64, Column);
 
@@ -79,7 +82,7 @@ fn lines(style: Style, rows: &Rows) -> String {
 }
 
 pub(crate) fn write(mut folder: Folder, part: &BatchResult) -> Result<(), Failure> {
-    folder.write("sweep.csv", csv(part).as_bytes())?;
+    folder.write(SWEEP, csv(part).as_bytes())?;
     folder.figure("sweep", &pictures::sweep(part))?;
     folder.finish_and_report()
 }
