@@ -129,7 +129,7 @@ pub(crate) struct Reproduce {
     /// Folder to write into
     #[arg(long, short, value_name = "DIR", default_value = "reproduction")]
     pub out: PathBuf,
-    /// Replace files of an earlier run
+    /// Replace files that no earlier reproduction has written
     #[arg(long)]
     pub force: bool,
     /// Also scan what the paper leaves open: which claims hold in which reading;

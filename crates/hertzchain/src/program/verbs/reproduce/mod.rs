@@ -18,8 +18,10 @@ use std::path::Path;
 use terminal_size::terminal_size_of;
 
 pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
+    // There is one paper: a folder of an earlier reproduction, which its provenance shows, gets the new one.
+    let replace = arguments.force || arguments.out.join(PROVENANCE).exists();
     // Whether it can be written to, before anything is computed for it.
-    let mut folder = Folder::open(&arguments.out, &[PROVENANCE], arguments.force)?;
+    let mut folder = Folder::open(&arguments.out, &["claims.md"], replace)?;
     let options = match arguments.readings {
         true => ReproduceOptions::default().with_readings(),
         false => ReproduceOptions::default(),
