@@ -21,9 +21,9 @@ TERMS = 11
 SHARE = 1.1
 DIRECTIONS = 4
 ALONE = (0.04, 0.04, 0.05)
-# The first two directions of incident pulses cover their range evenly: shift of the mean along the
-# first, and factors of both deviations, by the percentiles that are printed.
-EVENLY = (0.8, 1.4, 1.3)
+# The first two directions of incident and wall's pulses cover their range evenly: shift of the mean along
+# the first, and factors of both deviations, by the percentiles that are printed.
+EVENLY = ((0.8, 1.4, 1.3), (-0.6, 1.7, 1.0))
 INEXACT = 1.4e-4
 WHERE = ("incident", "wall", "reflected")
 
@@ -172,9 +172,10 @@ def prior(rows):
             print(
                 f"  percentiles 2, 98: {np.percentile(score, [2, 98]).round(1).tolist()}"
             )
-        if place == 0:
-            mean = mean + EVENLY[0] * along[0]
-            along[:2] *= np.array(EVENLY[1:])[:, None]
+        if place < 2:
+            shift, *factors = EVENLY[place]
+            mean = mean + shift * along[0]
+            along[:2] *= np.array(factors)[:, None]
         print(f"  mean {mean.round(2).tolist()}")
         for direction in along[:DIRECTIONS]:
             print(f"  together {direction.round(2).tolist()}")

@@ -131,21 +131,22 @@ pub(crate) fn volts(row: &Row, fault: &Fault) -> Vec<Vec<f64>> {
     channels
 }
 
-/// A low-pass, by Euler's method at the trace's interval.
+/// A low-pass, by differences with an error of second order in the trace's interval: one of first order
+/// shifts pulses by up to 13 ns against each other.
 fn filter(low_pass: Bandwidth, channel: &mut [f64]) {
     let ratio = TAU * low_pass.corner_hz * FINE_S;
-    let (mut value, mut rate) = (0.0, 0.0);
+    let damping = ratio / 2.0_f64.sqrt();
+    let (mut before, mut value) = (0.0, 0.0);
     for volts in channel {
-        if low_pass.order == 1 {
-            // Half a step's delay is left out: the mean of both ends.
-            let before = value;
-            value += ratio * (*volts - value) / (1.0 + 0.5 * ratio);
-            *volts = 0.5 * (before + value);
+        let push = ratio * (*volts - value);
+        let next = if low_pass.order == 1 {
+            value + push / (1.0 + 0.5 * ratio)
         } else {
-            rate += ratio * (*volts - value - 2.0_f64.sqrt() * rate);
-            value += ratio * rate;
-            *volts = value;
-        }
+            (ratio * push + 2.0 * value - (1.0 - damping) * before) / (1.0 + damping)
+        };
+        // Half a step's delay of the first order is left out: the mean of both ends.
+        *volts = if low_pass.order == 1 { 0.5 * (value + next) } else { value };
+        (before, value) = (value, next);
     }
 }
 

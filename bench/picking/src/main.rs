@@ -20,7 +20,7 @@ use tally::Tally;
 const PRESETS: [&str; 4] = ["dry", "pump", "gear", "motor"];
 const SPEEDS_M_S: [f64; 6] = [0.08, 0.2, 0.5, 1.2, 2.0, 2.5];
 const USAGE: &str = "usage: hertzchain-picking [SHOTS] [--seed N] [--only TEXT] [--each] \
-                     [--alone] [--compare] [--chains N] [--first N] [--write FOLDER]";
+                     [--alone] [--compare] [--beads N] [--chains N] [--first N] [--write FOLDER]";
 const HEADER: &str = "\
 | records | shots | timed | counted | incident: within 1.96, % | made/stated | mean pull \
 | reflected: % | made/stated | mean pull | counted, incident: % | made/stated | mean pull \
@@ -44,6 +44,8 @@ struct Options {
     alone: bool,
     /// Whether a quartic and averaged pulses pick the same records.
     compare: bool,
+    /// Beads of the presets' chains in place of their own.
+    beads: Option<u64>,
     /// So many chains at random in place of the presets' rows, from this number on.
     chains: u64,
     first: u64,
@@ -60,6 +62,7 @@ impl Options {
                 "--only" => options.only = words.next().ok_or(USAGE)?,
                 "--chains" => options.chains = words.next().ok_or(USAGE)?.parse()?,
                 "--first" => options.first = words.next().ok_or(USAGE)?.parse()?,
+                "--beads" => options.beads = Some(words.next().ok_or(USAGE)?.parse()?),
                 "--write" => options.write = words.next().map(PathBuf::from),
                 "--each" => options.each = true,
                 "--alone" => options.alone = true,
@@ -74,7 +77,7 @@ impl Options {
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse(std::env::args().skip(1))?;
     let rows = match options.chains {
-        0 => preset_rows()?,
+        0 => preset_rows(options.beads)?,
         count => {
             let numbers = options.first..options.first + count;
             numbers.filter_map(|number| Row::at_random(number).ok()).collect()
@@ -102,8 +105,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn preset_rows() -> Result<Vec<Row>, Box<dyn Error>> {
-    let speeds = |preset| SPEEDS_M_S.map(|speed_m_s| Row::of_preset(preset, speed_m_s));
+fn preset_rows(beads: Option<u64>) -> Result<Vec<Row>, Box<dyn Error>> {
+    let speeds = |preset| SPEEDS_M_S.map(|speed_m_s| Row::of_preset(preset, beads, speed_m_s));
     PRESETS.into_iter().flat_map(speeds).collect()
 }
 

@@ -24,8 +24,17 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    pub(crate) fn of_preset(preset: &str, speed_m_s: f64) -> Result<Self, Box<dyn Error>> {
-        let experiment = hertzchain_experiment::preset(preset)?;
+    /// Of a preset's chain, with so many beads in place of its 40.
+    pub(crate) fn of_preset(
+        preset: &str,
+        beads: Option<u64>,
+        speed_m_s: f64,
+    ) -> Result<Self, Box<dyn Error>> {
+        let mut experiment = hertzchain_experiment::preset(preset)?;
+        if let Some(beads) = beads {
+            let text = experiment.text().replace("count = 40", &format!("count = {beads}"));
+            experiment = Experiment::from_text(preset, &text)?;
+        }
         Self::new(preset.to_owned(), &experiment, speed_m_s)
     }
 

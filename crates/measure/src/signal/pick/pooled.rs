@@ -3,7 +3,7 @@
 //! Noise leaves a shape open that many shots determine. All of their pulses are fitted by one bell, each
 //! with a time, a height and a width of its own: the bell, given these, then these, given the bell.
 
-use super::log_polynomial::{BellTop, CommonBell, INEXACT, NARROWER, ShapePrior, half_width};
+use super::log_polynomial::{BellTop, CommonBell, NARROWER, ShapePrior, half_width};
 use super::{ChannelView, Picked, Systematic};
 use crate::signal::linear::{MOST, NormalEquations, Row};
 use crate::signal::{Pulse, median};
@@ -88,7 +88,7 @@ impl PulseSamples {
 
     /// Least squares of time, height and width with the bell given.
     fn placed(&self, bell: &CommonBell, mut place: Place, half: f64) -> Option<Place> {
-        let noise = self.broad_noise.hypot(INEXACT.0 * self.pulse.height);
+        let noise = self.broad_noise.hypot(bell.inexact * self.pulse.height);
         for _ in 0..STEPS {
             let mut normal = NormalEquations::new(3);
             let (mut squares, mut count) = (0.0, 0.0);
@@ -183,23 +183,31 @@ pub(crate) fn pool(pulses: &[(&PulseSamples, Picked)]) -> Vec<Option<Picked>> {
         let [one, other] = [pair[0].0, pair[1].0];
         one.interval_s == other.interval_s && one.inverse == other.inverse
     });
-    let mut shares = NARROWER.iter().filter(|_| alike);
-    let pooled = shares.find_map(|share| Pool::new(pulses, *share)?.picks(pulses));
-    pooled.unwrap_or_else(|| vec![None; pulses.len()])
+    let mut best: Option<Pool> = None;
+    for share in NARROWER.iter().filter(|_| alike) {
+        let widest = best.as_ref().map_or(*share, |best| best.widest);
+        let Some(next) = Pool::new(pulses, *share, widest) else { continue };
+        if best.as_ref().is_some_and(|best| best.variance() <= next.variance()) {
+            break;
+        }
+        best = Some(next);
+    }
+    best.map_or_else(|| vec![None; pulses.len()], |best| best.picks(pulses))
 }
 
 /// Pulses about one bell, over so many samples on either side.
 struct Pool {
     half: f64,
-    share: f64,
-    bell: CommonBell,
+    /// The widest window, as a share of the usual one, in which a bell leaves no more than noise.
+    widest: f64,
+    top: BellTop,
+    /// Error in samples of the common maximum by what is open of the shape.
+    shape: f64,
     places: Vec<Option<Place>>,
-    /// Pulses that have a say.
-    says: f64,
 }
 
 impl Pool {
-    fn new(pulses: &[(&PulseSamples, Picked)], share: f64) -> Option<Self> {
+    fn new(pulses: &[(&PulseSamples, Picked)], share: f64, widest: f64) -> Option<Self> {
         let middle = |of: &dyn Fn(&PulseSamples) -> f64| {
             median(&pulses.iter().map(|(one, _)| of(one)).collect::<Vec<f64>>())
         };
@@ -232,31 +240,43 @@ impl Pool {
             places = pulses.iter().zip(&places).map(placed).collect();
             last = Some((bell, says));
         }
-        let (bell, says) = last?;
-        Some(Self { half, share, bell, places, says })
+        let (bell, says) = last.filter(|(bell, _)| bell.is_adequate())?;
+        let top = bell.top(pulses.first()?.0.inverse)?;
+        let mut pool = Self { half, widest, top, shape: 0.0, places };
+        // Of the error of the common maximum, that of the mean place is a part: it is in each place's.
+        let in_samples = (half / pool.top.curvature).powi(2);
+        let beyond = in_samples * pool.top.slope_variance - pool.place_variance() / says;
+        pool.shape = beyond.max(in_samples * pool.top.open_variance).sqrt() / widest;
+        Some(pool)
     }
 
-    /// Of the error of the common maximum, that of the mean place is a part: it is in each place's.
-    fn picks(&self, pulses: &[(&PulseSamples, Picked)]) -> Option<Vec<Option<Picked>>> {
-        let (first, _) = pulses.first().filter(|_| self.bell.is_adequate())?;
-        let top = self.bell.top(first.inverse)?;
-        let in_samples = (self.half / top.curvature).powi(2);
+    /// Mean variance by noise of a pulse's place.
+    fn place_variance(&self) -> f64 {
         let placed = self.places.iter().flatten();
         let (sum, count) = placed.fold((0.0, 0.0), |(sum, n), at| (sum + at.variances[0], n + 1.0));
-        let beyond = in_samples * top.slope_variance - sum / count / self.says;
-        let shape = beyond.max(in_samples * top.open_variance).sqrt() / self.share;
+        sum / count
+    }
+
+    /// Of one pulse's time in samples.
+    fn variance(&self) -> f64 {
+        self.place_variance() + self.shape * self.shape
+    }
+
+    fn picks(&self, pulses: &[(&PulseSamples, Picked)]) -> Vec<Option<Picked>> {
         let pick = |((one, own), place): (&(&PulseSamples, Picked), &Option<Place>)| {
             let place = place.as_ref().filter(|place| one.is_free_of_drift(place))?;
-            Some(one.pick(own, place, &top, (self.half, shape)))
+            Some(one.pick(own, place, &self.top, (self.half, self.shape)))
         };
-        Some(pulses.iter().zip(&self.places).map(pick).collect())
+        pulses.iter().zip(&self.places).map(pick).collect()
     }
 }
 
 impl Place {
     fn begun(samples: &PulseSamples, own: &Picked) -> Option<Self> {
+        // A low-pass delays a bell by its first coefficient, and the prior is of bells about their
+        // maximum.
         (samples.relative_noise() <= NOISIEST).then(|| Self {
-            time: own.time_s / samples.interval_s,
+            time: own.time_s / samples.interval_s + samples.inverse[0],
             height: samples.pulse.height,
             width: 1.0,
             variances: [0.0; 2],
