@@ -1,9 +1,7 @@
 //! A posterior's checkpoint, as `fit --resume` continues it.
 #![no_main]
 
-use hertzchain_infer::{
-    Chain, ModelError, Parameter, Prior, Problem, Requirements, Residuals,
-};
+use hertzchain_infer::{Chain, ModelError, Parameter, Prior, Problem, Requirements, Residuals};
 use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;
 

@@ -172,11 +172,16 @@ fn a_chain_saved_and_continued_has_the_bits_of_an_uninterrupted_one() {
     assert_eq!(read, whole);
     // Damaged files and other parameters are refused.
     let huge = u64::MAX.to_string();
-    for (name, from, to) in
-        [("steps", "41", "57"), ("steps", "41", &huge), ("ensembles", "2", &huge)]
-    {
-        let cut = text.replacen(&format!("\"{name}\":{from}"), &format!("\"{name}\":{to}"), 1);
-        assert_ne!(cut, text, "{name}");
+    let changed = |from: &str, to: &str| text.replacen(from, to, 1);
+    // The last number of the file.
+    let (before, _) = text.split_once("\"failed\":").unwrap();
+    for cut in [
+        changed("\"steps\":41", "\"steps\":57"),
+        changed("\"steps\":41", &format!("\"steps\":{huge}")),
+        changed("\"ensembles\":2", &format!("\"ensembles\":{huge}")),
+        format!("{before}\"failed\":{huge}}}"),
+    ] {
+        assert_ne!(cut, text);
         let mut damaged: Chain = serde_json::from_str(&cut).unwrap();
         let error = damaged.advance(&data, 1).unwrap_err().to_string();
         assert!(error.starts_with("the saved chain is damaged"), "{error}");

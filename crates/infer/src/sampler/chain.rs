@@ -80,7 +80,7 @@ pub struct Chain {
 /// them by 10⁻⁶, other data by units.
 const SAME: f64 = 0.05;
 
-/// More than any machine steps; their half steps are counted too.
+/// More than any machine steps or moves; half steps are counted too.
 const MOST_STEPS: u64 = 1 << 62;
 
 impl Chain {
@@ -190,7 +190,7 @@ impl Chain {
         let is_whole = self.ensembles > 0
             && parameters > 0
             && self.keep_every > 0
-            && self.steps < MOST_STEPS
+            && self.steps.max(self.accepted).max(self.failed) < MOST_STEPS
             && walkers / 4 >= self.ensembles
             && walkers.is_multiple_of(2 * self.ensembles)
             && self.places.iter().all(|place| place.len() == parameters)

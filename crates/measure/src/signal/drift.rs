@@ -10,7 +10,7 @@ use crate::signal::linear::{
 /// Highest degree of the baseline: over a shot of 3 ms mains hum of 20 % is a cubic to 0.1 %.
 const HIGHEST: usize = 3;
 /// Widths before a pulse's maximum, and after the last one's, that are not baseline.
-const MARGIN: f64 = 2.0;
+pub(super) const MARGIN: f64 = 2.0;
 /// Times of flight before the first pulse over which the baseline is fitted.
 const BEFORE: f64 = 1.5;
 const FEWEST: usize = 64;
@@ -93,14 +93,20 @@ impl Detrended {
     }
 
     /// Standard error in samples of a maximum of this height and width, as the slope of the baseline
-    /// beneath it is open: slope over curvature, that of a Gaussian.
+    /// beneath it is open.
     pub(super) fn time_error(&self, at: f64, height: f64, width: f64) -> f64 {
         let mut row = differentiated(&powers((at - self.first as f64) / self.half));
         // A step in it has no slope.
         row[self.fit.degree + 1..].fill(0.0);
         let slope = self.fit.noise * self.fit.solution.variance(&row).sqrt() / self.half;
-        slope * width * width / (8.0 * std::f64::consts::LN_2 * height)
+        time_error(slope, height, width)
     }
+}
+
+/// By how much a slope beneath it moves a maximum of this height and width: slope over curvature,
+/// that of a Gaussian.
+pub(super) fn time_error(slope: f64, height: f64, width: f64) -> f64 {
+    slope * width * width / (8.0 * std::f64::consts::LN_2 * height)
 }
 
 /// Stretches of a channel without pulses, and the unit of the polynomials through them.

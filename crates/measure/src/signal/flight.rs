@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 
 use crate::error::{MeasureError, Result};
-use crate::signal::drift::Detrended;
+use crate::signal::drift::{Detrended, MARGIN};
 use crate::signal::find::conditioned_pulses;
 use crate::signal::hum;
 use crate::signal::pick::{PulseSamples, pick};
+use crate::signal::tones::Tones;
 use crate::signal::{
     Bandwidth, Channels, CompetingPick, Estimate, FindOptions, Found, LowPass, Method, Picked,
     Picks, Polarity, Pulse, PulseKind, QualityFlag, Systematic, invert_high_pass, normalisation,
@@ -94,7 +95,12 @@ pub fn measure(
         .collect::<Result<_, _>>()?;
     let recorded: Vec<&[f64]> = repaired.iter().map(|(samples, _)| &samples[..]).collect();
     let recorded = channels_of(&recorded);
-    let (mut found, calm) = without_hum(&conditioned, interval_s, (recorded, find))?;
+    let (found, calm) = without_hum(&conditioned, interval_s, (recorded, find))?;
+    let tones = subtract_tones(&found, &mut conditioned, interval_s);
+    let (mut found, calm) = match tones.iter().any(Option::is_some) {
+        true => without_hum(&conditioned, interval_s, (recorded, find))?,
+        false => (found, calm),
+    };
     let drifts: Vec<Option<Detrended>> =
         (0..count).map(|of| drift(&found, &conditioned, calm[of].as_deref(), of)).collect();
     let has_drift = drifts.iter().any(Option::is_some) || calm.iter().any(Option::is_some);
@@ -107,13 +113,7 @@ pub fn measure(
         found = conditioned_pulses(channels_of(&conditioned), recorded, find)?;
     }
     let channels = channels_of(&conditioned);
-    if let Some(low_pass) = options.low_pass {
-        // How far a clipped top's corners reach.
-        let reach = (0.5 / (low_pass.cutoff_hz * interval_s)).ceil() as usize;
-        for pulse in found.pulses_mut() {
-            *pulse = pulse.with_clipped_spread(reach);
-        }
-    }
+    options.spread_clipping(&mut found, interval_s);
     let changed = options.high_pass_s.is_some() || options.low_pass.is_some();
     let ranges = if changed { [None; 2] } else { find.ranges(channels) };
     let corrections = (ranges, options.bandwidth);
@@ -122,15 +122,16 @@ pub fn measure(
         Ok((picks, samples)) => (Ok(picks), samples),
         Err(error) => (Err(error), [const { None }; 3]),
     };
-    let calibrated = |picks| {
-        with_drift(picks, &mut samples, &drifts, interval_s).calibrated(options.calibration)
-    };
+    let slow = (&drifts[..], &tones[..]);
+    let calibrated =
+        |picks| with_drift(picks, &mut samples, slow, interval_s).calibrated(options.calibration);
     let flight = picks.map(calibrated).map(Picks::flight);
     let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     let not_picked = none_reflected && found.reflected.is_some();
     found.flag(not_picked.then_some(QualityFlag::NotPicked(PulseKind::Reflected)));
     found.flag((spikes > 0).then_some(QualityFlag::Spikes(spikes)));
-    found.flag(has_drift.then_some(QualityFlag::Drift));
+    let is_subtracted = has_drift || tones.iter().any(Option::is_some);
+    found.flag(is_subtracted.then_some(QualityFlag::Drift));
     Ok(Measured { found, flight, samples })
 }
 
@@ -164,6 +165,22 @@ fn without_hum(
     Ok((found, vec![None; channels.len()]))
 }
 
+/// Subtracts from each channel the sines that it has before the first pulse, and returns them.
+fn subtract_tones(
+    found: &Found,
+    channels: &mut [Cow<'_, [f64]>],
+    interval_s: f64,
+) -> Vec<Option<Tones>> {
+    let tones = |samples: &mut Cow<'_, [f64]>| {
+        let first = found.incident.filter(|_| found.wall.is_some())?;
+        let end = first.at.checked_sub((MARGIN * first.width_samples) as usize)?;
+        let tones = Tones::new(&samples[..end], first.height, interval_s)?;
+        *samples = tones.subtracted(samples).into();
+        Some(tones)
+    };
+    channels.iter_mut().map(tones).collect()
+}
+
 /// The slow baseline of a channel of a shot whose pulses were found, if it has one.
 fn drift(
     found: &Found,
@@ -182,15 +199,18 @@ fn drift(
 fn with_drift(
     mut picks: Picks,
     samples: &mut [Option<Box<PulseSamples>>; 3],
-    drifts: &[Option<Detrended>],
+    (drifts, tones): (&[Option<Detrended>], &[Option<Tones>]),
     interval_s: f64,
 ) -> Picks {
     let last = drifts.len() - 1;
     let mut widen = |pick: &mut Picked, kind: PulseKind| {
         let which = usize::from(kind == PulseKind::Wall);
-        if let Some(drift) = &drifts[which.min(last)] {
+        let (drift, tones) = (&drifts[which.min(last)], &tones[which.min(last)]);
+        if drift.is_some() || tones.is_some() {
             let [at, width] = [pick.time_s, pick.width_s].map(|s| s / interval_s);
-            let error_s = drift.time_error(at, pick.height, width) * interval_s;
+            let of_drift = drift.as_ref().map_or(0.0, |it| it.time_error(at, pick.height, width));
+            let of_tones = tones.as_ref().map_or(0.0, |it| it.time_error(at, pick.height, width));
+            let error_s = of_drift.hypot(of_tones) * interval_s;
             pick.sigma_s = pick.sigma_s.hypot(error_s);
             if let Some(samples) = &mut samples[kind as usize] {
                 samples.of_drift_s = error_s;
@@ -204,6 +224,16 @@ fn with_drift(
 }
 
 impl SignalOptions {
+    /// Widens clipped tops by how far a low-pass spreads their corners.
+    fn spread_clipping(&self, found: &mut Found, interval_s: f64) {
+        if let Some(low_pass) = self.low_pass {
+            let reach = (0.5 / (low_pass.cutoff_hz * interval_s)).ceil() as usize;
+            for pulse in found.pulses_mut() {
+                *pulse = pulse.with_clipped_spread(reach);
+            }
+        }
+    }
+
     fn condition<'a>(
         &self,
         samples: &'a [f64],

@@ -7,26 +7,26 @@ pub(crate) const MOST: usize = 11;
 pub(crate) type Row = [f64; MOST];
 
 #[derive(Clone)]
-pub(crate) struct NormalEquations {
-    matrix: [Row; MOST],
-    right: Row,
+pub(crate) struct NormalEquations<const N: usize = MOST> {
+    matrix: [[f64; N]; N],
+    right: [f64; N],
     size: usize,
 }
 
 /// Parameters, and the inverse of the normal matrix: their covariance for unit noise.
-pub(crate) struct LinearSolution {
-    pub(crate) values: Row,
-    pub(crate) inverse: [Row; MOST],
+pub(crate) struct LinearSolution<const N: usize = MOST> {
+    pub(crate) values: [f64; N],
+    pub(crate) inverse: [[f64; N]; N],
     size: usize,
 }
 
-impl NormalEquations {
+impl<const N: usize> NormalEquations<N> {
     pub(crate) fn new(size: usize) -> Self {
-        Self { matrix: [[0.0; MOST]; MOST], right: [0.0; MOST], size: size.min(MOST) }
+        Self { matrix: [[0.0; N]; N], right: [0.0; N], size: size.min(N) }
     }
 
     /// Adds one equation Σ row_k · parameter_k = value of weight 1.
-    pub(crate) fn add(&mut self, row: &Row, value: f64) {
+    pub(crate) fn add(&mut self, row: &[f64; N], value: f64) {
         for j in 0..self.size {
             for k in 0..=j {
                 self.matrix[j][k] += row[j] * row[k];
@@ -36,18 +36,18 @@ impl NormalEquations {
     }
 
     /// A step of Marquardt's method: the diagonal multiplied by `factor`.
-    fn damped_step(&self, factor: f64) -> Option<Row> {
+    fn damped_step(&self, factor: f64) -> Option<[f64; N]> {
         let mut damped = self.clone();
         (0..self.size).for_each(|j| damped.matrix[j][j] *= factor);
         Some(damped.substitute(&damped.cholesky()?, self.right))
     }
 
     /// `None` if the equations do not determine every parameter.
-    pub(crate) fn solve(&self) -> Option<LinearSolution> {
+    pub(crate) fn solve(&self) -> Option<LinearSolution<N>> {
         let root = self.cholesky()?;
-        let mut inverse = [[0.0; MOST]; MOST];
+        let mut inverse = [[0.0; N]; N];
         for j in 0..self.size {
-            let mut unit = [0.0; MOST];
+            let mut unit = [0.0; N];
             unit[j] = 1.0;
             inverse[j] = self.substitute(&root, unit);
         }
@@ -63,8 +63,8 @@ impl NormalEquations {
         Some(2.0 * (0..self.size).map(|j| root[j][j].ln()).sum::<f64>())
     }
 
-    fn cholesky(&self) -> Option<[Row; MOST]> {
-        let mut root = [[0.0; MOST]; MOST];
+    fn cholesky(&self) -> Option<[[f64; N]; N]> {
+        let mut root = [[0.0; N]; N];
         for j in 0..self.size {
             for k in 0..=j {
                 let known: f64 = (0..k).map(|i| root[j][i] * root[k][i]).sum();
@@ -82,7 +82,7 @@ impl NormalEquations {
     }
 
     /// Solves with the factor: forward, then backward.
-    fn substitute(&self, root: &[Row; MOST], right: Row) -> Row {
+    fn substitute(&self, root: &[[f64; N]; N], right: [f64; N]) -> [f64; N] {
         let mut x = right;
         for j in 0..self.size {
             let known: f64 = (0..j).map(|k| root[j][k] * x[k]).sum();
@@ -96,17 +96,17 @@ impl NormalEquations {
     }
 }
 
-impl LinearSolution {
+impl<const N: usize> LinearSolution<N> {
     /// Variance of Σ row_k · parameter_k for unit noise.
-    pub(crate) fn variance(&self, row: &Row) -> f64 {
+    pub(crate) fn variance(&self, row: &[f64; N]) -> f64 {
         let covariances = self.covariance_with(row);
         let used = row.iter().zip(covariances).take(self.size);
         used.map(|(weight, covariance)| weight * covariance).sum()
     }
 
     /// Covariance of each parameter with Σ row_k · parameter_k for unit noise.
-    pub(crate) fn covariance_with(&self, row: &Row) -> Row {
-        let covariance = |line: &Row| {
+    pub(crate) fn covariance_with(&self, row: &[f64; N]) -> [f64; N] {
+        let covariance = |line: &[f64; N]| {
             let terms = line.iter().zip(row).take(self.size);
             terms.map(|(c, r)| c * r).sum()
         };

@@ -36,6 +36,7 @@ mod pick;
 mod power_law;
 mod spikes;
 mod statistics;
+mod tones;
 
 pub use self::{
     baseline::{Baseline, baseline},

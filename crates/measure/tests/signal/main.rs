@@ -23,4 +23,5 @@ mod shared;
 #[path = "common/source.rs"]
 mod source;
 mod spikes;
+mod tones;
 mod zero_phase;

@@ -44,10 +44,10 @@ impl<'a> Names<'a> {
         };
         let class = dataset.attr(CLASS).and_then(|class| class.read_string()).unwrap_or_default();
         match dataset.datatype() {
-            Ok(DatatypeMessage::FixedPoint { .. } | DatatypeMessage::FloatingPoint { .. }) => {
-                if !NO_NUMBERS.contains(&&*class) && dataset.attr(EMPTY).is_err() {
-                    self.found.insert(name, path.to_owned());
-                }
+            Ok(DatatypeMessage::FixedPoint { .. } | DatatypeMessage::FloatingPoint { .. })
+                if !NO_NUMBERS.contains(&&*class) && dataset.attr(EMPTY).is_err() =>
+            {
+                self.found.insert(name, path.to_owned());
             }
             Ok(kind @ DatatypeMessage::Reference { .. }) if kind == own_reference() => {
                 return self.add_cells((&name, path), &dataset, class == CELLS, depth);

@@ -1,0 +1,73 @@
+//! Sines before a shot: harmonics of the mains and the ripple of a supply.
+
+use crate::signal::{Channels, Flight, QualityFlag, SignalOptions, coverage, measure};
+use crate::tests::common::normal;
+use crate::tests::dry::Dry;
+use crate::tests::source::dry_shot;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::TAU;
+
+const INTERVAL_S: f64 = 1e-6;
+
+/// 15 shots of 60 dB with so many quiet samples before them, and shares of sines of frequencies in Hz
+/// under them.
+fn flights(lead: usize, sines: &[(f64, f64)]) -> Vec<Flight> {
+    let (source, noise) = (dry_shot(), 1e-3);
+    let shot = |number: u64| {
+        let mut rng = ChaCha8Rng::seed_from_u64(number);
+        let mut samples: Vec<f64> = (0..lead).map(|_| noise * normal(&mut rng)).collect();
+        samples.extend(source.recorded(INTERVAL_S, noise, &mut rng));
+        for (at, sample) in samples.iter_mut().enumerate() {
+            let sine = |(share, hz): &(f64, f64)| {
+                share * (TAU * (hz * at as f64 * INTERVAL_S + hz * number as f64 / 7.3)).sin()
+            };
+            *sample += sines.iter().map(sine).sum::<f64>();
+        }
+        let options = SignalOptions::default();
+        let measured = measure(Channels::Summed(&samples), INTERVAL_S, &options).unwrap();
+        assert_eq!(measured.found.flags.contains(&QualityFlag::Drift), !sines.is_empty());
+        measured.flight.unwrap()
+    };
+    (0..15).map(shot).collect()
+}
+
+fn widest_s(flights: &[Flight]) -> f64 {
+    flights.iter().map(|flight| flight.incident_s.sigma).fold(0.0, f64::max)
+}
+
+/// Root mean square of made over stated errors of both times.
+fn scales(flights: &[Flight]) -> [f64; 2] {
+    let [passing, wall, back] = Dry::MAXIMA_S;
+    let incident = flights.iter().map(|flight| (flight.incident_s, wall - passing));
+    let reflected = flights.iter().map(|flight| (flight.reflected_s.unwrap(), back - wall));
+    let scale = |pulls: Vec<f64>| coverage(&pulls, 1.96).unwrap().scale;
+    let pull = |(time, true_s): (crate::signal::Estimate, f64)| (time.value - true_s) / time.sigma;
+    [scale(incident.map(pull).collect()), scale(reflected.map(pull).collect())]
+}
+
+#[test]
+fn harmonics_above_500_hz_and_ripple_widen_no_error_where_the_record_shows_them() {
+    let quiet_s = widest_s(&flights(30_000, &[]));
+    for sines in [
+        &[(0.05, 50.0), (0.01, 150.0), (0.01, 650.0)][..],
+        &[(0.01, 2130.0)],
+        &[(0.2, 49.9), (0.02, 649.0), (0.01, 1310.0)],
+    ] {
+        let found = flights(30_000, sines);
+        // Taken for noise, a sine of 1 % and 650 Hz widens them thirtyfold.
+        assert!(widest_s(&found) < 1.5 * quiet_s, "{sines:?}: {} {quiet_s}", widest_s(&found));
+        for scale in scales(&found) {
+            // The root mean square of 15 deviates is 1 ± 0.18.
+            assert!((0.4..1.5).contains(&scale), "{sines:?}: {scale}");
+        }
+    }
+}
+
+#[test]
+fn records_that_show_less_than_a_period_are_left_as_they_are() {
+    let found = flights(8000, &[(0.2, 50.0), (0.01, 650.0)]);
+    for scale in scales(&found) {
+        assert!(scale < 1.5, "{scale}");
+    }
+}
