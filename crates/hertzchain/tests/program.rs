@@ -184,7 +184,7 @@ fn no_verb_replaces_files_of_an_earlier_run_unless_asked() {
         ("design", &[&[&data[..]], &fit[..]].concat(), "design.json"),
         ("gauge", &[&data, "--dry", &data, "--tof-error", "1us"], "gauge.json"),
         ("live", &[folder.to_str().unwrap(), "--stop-after", "1ms"], "measured.json"),
-        ("reproduce", &[], "provenance.json"),
+        ("reproduce", &[], "claims.md"),
     ];
     for (verb, arguments, file) in verbs {
         let out = at(&format!("{verb}-{file}"));
