@@ -317,6 +317,7 @@ fn sections(case: Case, speed_m_s: f64) -> Vec<Section> {
                 poisson_ratio,
                 shear_viscosity_pa_s: eta,
                 bulk_viscosity_pa_s: eta,
+                yield_strength_pa: None,
             };
             vec![
                 section(0..=SENSOR - 1, dry(), None),
