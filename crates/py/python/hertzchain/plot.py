@@ -115,13 +115,13 @@ def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes |
         A sensor that was not sampled.
     """
     trace = _trace(shot)
-    shown = list(sensors or [name for name in trace.signals if trace.unit(name) in ("N", "1")])
+    shown = list(sensors or [name for name in trace.signals if trace.units[name] in ("N", "1")])
     ax = on_axes(ax)
     scale, unit = time_scale(trace.dimensionless)
     for name in shown:
         ax.plot(scale * trace.time_s, trace[name], label=_label(name))
     ax.set_xlabel(f"Time{unit}")
-    of = trace.unit(shown[0]) if shown else "N"
+    of = trace.units[shown[0]] if shown else "N"
     ax.set_ylabel("Signal" if of == "1" else f"{ {'N': 'Force', 'm/s': 'Velocity', 'm': 'Displacement'}[of] } ({of})")
     ax.margins(x=0)
     if len(shown) > 1:
@@ -176,7 +176,7 @@ def space_time(shot: Shot | Trace, kind: str = "contact", ax: Axes | None = None
     mesh = ax.pcolormesh(scale * trace.time_s, numbers, values, shading="nearest", rasterized=True, vmax=most, **colours)
     ax.grid(False)
     ax.set(xlabel=f"Time{unit}", ylabel="Contact" if kind == "contact" else "Bead")
-    of = trace.unit(f"{kind}_0")
+    of = trace.units[f"{kind}_{numbers[0]}"]
     name = {"contact": "Force", "bead": "Force", "velocity": "Velocity", "position": "Displacement"}[kind]
     figure = ax.get_figure()
     if figure is not None:

@@ -224,12 +224,6 @@ class Trace(Result):
     energy: dict[str, Floats]
     dimensionless: bool = False
 
-    def unit(self, sensor: str) -> str:
-        """Unit of a sensor's signal, by its name, such as ``"bead_7"``: "N", "m", "m/s", or "1" without units."""
-        if self.dimensionless:
-            return "1"
-        return {"position": "m", "velocity": "m/s"}.get(sensor.split("_")[0], "N")
-
     def stacked(self, kind: str) -> tuple[NDArray[Any], Floats]:
         """Signals of all sensors of a kind as one array.
 
@@ -254,10 +248,11 @@ class Trace(Result):
         return {"time_s": self.time_s, **self.signals}
 
     def _units(self) -> dict[str, str]:
-        return {name: self.unit(name) for name in self.signals}
+        kinds = {"position": "m", "velocity": "m/s"}
+        return {name: "1" if self.dimensionless else kinds.get(name.split("_")[0], "N") for name in self.signals}
 
     def _summary(self) -> tuple[str, dict[str, str]]:
-        rows = {name: f"{short(np.max(np.abs(signal)))} {self.unit(name)} at most" for name, signal in self.signals.items()}
+        rows = {name: f"{short(np.max(np.abs(signal)))} {self.units[name]} at most" for name, signal in self.signals.items()}
         return f"Trace of {self.time_s.size} samples until {short(self.time_s[-1] if self.time_s.size else None)} s", rows
 
 
