@@ -125,7 +125,9 @@ impl Shot {
                 self.pick_by_hand(entry.picks_s, sigma_s, options.measuring.calibration);
                 entry.out_of_order(&self.source, &self.flight.as_ref().ok()?.picks)
             });
-            self.flight = error.map_or(self.flight.clone(), Err);
+            if let Some(error) = error {
+                self.flight = Err(error);
+            }
         }
     }
 

@@ -38,8 +38,8 @@ const MARGIN: [f64; 2] = [1.5, 2.0];
 /// scatters errors: with 1.5, 3 of 601 shots of pump oil at 1e-6 were wrong by up to 1.4 times what was asked.
 const OF_COMPETING: f64 = 2.5;
 
-/// Least accuracy of rows whose maxima compete: at 1e-7 errors scatter more than calibration shots show, and 14
-/// of 1,501 shots of motor oil were wrong by up to 1.5 times what was asked.
+/// Tightest accuracy at which rows whose maxima compete are calibrated: at 1e-7 errors scatter more than
+/// calibration shots show, and 14 of 1,501 shots of motor oil were wrong by up to 1.5 times what was asked.
 const LEAST_OF_COMPETING: f64 = 1e-6;
 
 /// Calibration shots that say how wrong one of a speed between theirs is: what a row does behind
@@ -113,10 +113,11 @@ const OF_ADAPTIVE: f64 = 5000.0;
 /// Shots may last this many times as long as the longest calibration shot.
 const LONGEST: f64 = 1.5;
 
-/// Longest step in contact times with which calibration shots are computed first at any accuracy.
+/// Calibration shots are computed first with steps of at least so many contact times, at any accuracy.
 const FIRST: f64 = 0.036;
 
-/// Steps below which what is left open sooner takes the adaptive loop: shorter ones serve hardly more.
+/// Shortest step that is tried on what longer ones leave open, before the adaptive loop: of pump oil, 2 of
+/// 10,001 shots more are right with a quarter of it.
 const SHORTEST: f64 = 0.017;
 
 /// A setting is added if it leaves at most this share of the cost.
