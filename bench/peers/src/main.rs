@@ -25,7 +25,7 @@ use python::Worker;
 use scan::{Patience, Point, candidates, scan};
 use std::path::Path;
 use table::Row;
-use tool::{TOOLS, Tool, measured};
+use tool::{FRONTS, TOOLS, Tool, measured};
 
 /// The accuracies asked for, the measure first.
 const ACCURACIES: [f64; 3] = [1e-5, 1e-3, 1e-7];
@@ -48,17 +48,24 @@ fn main() -> anyhow::Result<()> {
     converged::check(&reference)?;
     let script = folder.join("python/worker.py");
     let worker = Worker::start(python, &script.to_string_lossy())?;
-    let mut session = Session {
-        worker,
-        quick,
-        rows: Vec::new(),
-        our_speeds: Vec::new(),
-        lines: Vec::new(),
-    };
+    let mut session =
+        Session { worker, quick, rows: Vec::new(), our_speeds: Vec::new(), lines: Vec::new() };
     for case in Case::ALL {
         session.run(case)?;
     }
     session.write(&folder.join("results"))
+}
+
+/// What is added to a tool's name where its tolerance is the accuracy asked.
+const USUAL: &str = ", tolerance as asked";
+
+/// What a user of a tool would begin with: its first method, the accuracy as its tolerance.
+fn usual(tool: &Tool, points: &[Point], accuracy: f64) -> Option<Point> {
+    let method = *tool.methods.first()?;
+    let near = |point: &&Point| (point.setting / accuracy).ln().abs();
+    let of_method = points.iter().filter(|point| point.method == method);
+    let nearest = of_method.min_by(|a, b| near(a).total_cmp(&near(b)))?;
+    (tool.setting == "tolerance").then_some(Point { setting: accuracy, ..*nearest })
 }
 
 struct Session {
@@ -77,20 +84,32 @@ impl Session {
             self.our_line(&converged);
         }
         for tool in TOOLS.iter().filter(|tool| tool.can(case)) {
-            let points = scan(
-                tool,
-                &self.worker,
-                case,
-                &converged,
-                self.patience(tool, case),
-            );
-            self.contests(tool, case, &points, &converged)?;
+            let points = scan(tool, &self.worker, case, &converged, self.patience(tool, case));
+            for accuracy in ACCURACIES {
+                let best = candidates(&points, accuracy, tool.ladder.1);
+                self.contest(tool, tool.name, (case, accuracy), &best, &converged)?;
+                let usual: Vec<Point> = usual(tool, &points, accuracy).into_iter().collect();
+                let name = format!("{}{USUAL}", tool.name);
+                self.contest(tool, &name, (case, accuracy), &usual, &converged)?;
+            }
             if case == Case::Dry {
                 self.lines.push((tool.name.into(), points));
             }
         }
+        for (tool, accuracy) in FRONTS.iter().flat_map(|tool| ACCURACIES.map(|a| (tool, a))) {
+            let point = self.tried(tool, case, accuracy);
+            self.contest(tool, tool.name, (case, accuracy), &[point], &converged)?;
+        }
         self.settle_ours();
         Ok(())
+    }
+
+    /// A front with an accuracy, and about how quick it is.
+    fn tried(&self, tool: &Tool, case: Case, accuracy: f64) -> Point {
+        let (speeds, method) = (speeds_m_s(20), tool.methods[0]);
+        let seconds = tool.run(&self.worker, method, case, accuracy, &speeds).seconds;
+        let shots_per_s = speeds.len() as f64 / seconds;
+        Point { method, setting: accuracy, error: f64::NAN, shots_per_s }
     }
 
     fn patience(&self, tool: &Tool, case: Case) -> Patience {
@@ -104,14 +123,9 @@ impl Session {
     fn question(&self, case: Case, accuracy: f64) -> Question {
         let measure = case == Case::Dry && accuracy == 1e-5;
         match (self.quick, measure) {
-            (true, _) => Question {
-                case,
-                accuracy,
-                rounds: 1,
-                seconds: 0.05,
-                fewest_fast: 20,
-                tuned_on: 20,
-            },
+            (true, _) => {
+                Question { case, accuracy, rounds: 1, seconds: 0.05, fewest_fast: 20, tuned_on: 20 }
+            }
             (_, true) => Question {
                 case,
                 accuracy,
@@ -133,72 +147,56 @@ impl Session {
 
     /// Our rows tell the median of what was measured beside all peers.
     fn settle_ours(&mut self) {
-        for row in self.rows.iter_mut().filter(|row| row.tool == "hertzchain") {
+        for row in self.rows.iter_mut().filter(|row| row.answer.setting == 0.0) {
             let beside = self.our_speeds.iter();
             let beside = beside.filter(|(case, accuracy, _)| row.is_ours(*case, *accuracy));
             row.answer.shots_per_s = median(beside.map(|(.., speed)| *speed).collect());
         }
     }
 
-    fn contests(
+    fn contest(
         &mut self,
         tool: &Tool,
-        case: Case,
-        points: &[Point],
+        name: &str,
+        (case, accuracy): (Case, f64),
+        candidates: &[Point],
         converged: &Converged,
     ) -> anyhow::Result<()> {
-        for accuracy in ACCURACIES {
-            let candidates = candidates(points, accuracy, tool.ladder.1);
-            let question = self.question(case, accuracy);
-            let answers = question.ask(tool, &self.worker, &candidates, converged);
-            let Some(Outcome {
-                of_us,
-                of_them,
-                ratio,
-            }) = answers
-            else {
-                continue;
-            };
-            self.our_speeds.push((case, accuracy, of_us.shots_per_s));
-            println!(
-                "{} {accuracy:e}: {} {:.1}/s ({} {:.2e}, error {:.1e} {:.1e}), ours {:.1}/s, {:.1} times",
-                case.name(),
-                tool.name,
-                of_them.shots_per_s,
-                of_them.method,
-                of_them.setting,
-                of_them.errors.0,
-                of_them.errors.1,
-                of_us.shots_per_s,
-                ratio.median,
-            );
-            let row = |name: &str, version, answer, ratio, setting: &str, instruction_set| Row {
-                tool: name.into(),
-                version,
-                case,
-                accuracy,
-                answer,
-                ratio,
-                setting: setting.into(),
-                instruction_set,
-            };
-            if !self.rows.iter().any(|r| r.is_ours(case, accuracy)) {
-                let set = ours::instruction_set();
-                let version = env!("CARGO_PKG_VERSION").into();
-                let setting = question.our_setting(converged).to_string();
-                self.rows
-                    .push(row("hertzchain", version, of_us, Ratio::ONE, &setting, set));
-            }
-            let version = tool.version(&self.worker)?;
-            self.rows.push(row(
-                tool.name,
-                version,
-                of_them,
-                ratio,
-                tool.setting,
-                tool.runs_on(),
-            ));
+        let question = self.question(case, accuracy);
+        let answers = question.ask(tool, &self.worker, candidates, converged);
+        let Some(Outcome { of_us, of_them, ratio }) = answers else {
+            return Ok(());
+        };
+        self.our_speeds.push((case, accuracy, of_us.shots_per_s));
+        println!(
+            "{} {accuracy:e}: {name} {:.1}/s ({} {:.2e}, error {:.1e} {:.1e}), ours {:.1}/s, {:.1} times",
+            case.name(),
+            of_them.shots_per_s,
+            of_them.method,
+            of_them.setting,
+            of_them.errors.0,
+            of_them.errors.1,
+            of_us.shots_per_s,
+            ratio.median,
+        );
+        let row = |name: &str, version, answer, ratio, setting: &str, instruction_set| Row {
+            tool: name.into(),
+            version,
+            case,
+            accuracy,
+            answer,
+            ratio,
+            setting: setting.into(),
+            instruction_set,
+        };
+        if !self.rows.iter().any(|r| r.is_ours(case, accuracy)) {
+            let set = ours::instruction_set();
+            let version = env!("CARGO_PKG_VERSION").into();
+            let setting = question.our_setting(converged).to_string();
+            self.rows.push(row("hertzchain, bare loop", version, of_us, Ratio::ONE, &setting, set));
         }
+        let version = tool.version(&self.worker)?;
+        self.rows.push(row(name, version, of_them, ratio, tool.setting, tool.runs_on()));
         Ok(())
     }
 
@@ -213,12 +211,7 @@ impl Session {
                 converged::errors(&timed.tofs_s, &converged.tofs_s(&speeds));
             let shots_per_s = speeds.len() as f64 / timed.seconds;
             let error = incident.max(reflected);
-            points.push(Point {
-                method: "",
-                setting: accuracy,
-                error,
-                shots_per_s,
-            });
+            points.push(Point { method: "", setting: accuracy, error, shots_per_s });
         }
         self.lines.push(("hertzchain".into(), points));
     }
@@ -239,10 +232,7 @@ impl Session {
             table::native()
         );
         std::fs::write(results.join("table.csv"), table::csv(&self.rows))?;
-        std::fs::write(
-            results.join("table.md"),
-            table::markdown(&self.rows, &scale, &machine),
-        )?;
+        std::fs::write(results.join("table.md"), table::markdown(&self.rows, &scale, &machine))?;
         picture::write(&self.lines, results)
     }
 }

@@ -250,7 +250,7 @@ impl Passed {
             return false;
         };
         let soonest_s = wall.time_s + SOONEST * (wall.time_s - incident.time_s);
-        let now = 0.5 * (piece.force(SENSOR - 1, 1.0) + piece.force(SENSOR, 1.0));
+        let now = piece.signal(Sensor::Bead(SENSOR), 1.0);
         reflected.time_s > soonest_s && now < FALLEN * reflected.value
     }
 }

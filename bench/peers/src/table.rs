@@ -70,12 +70,7 @@ pub fn csv(rows: &[Row]) -> String {
          shots,shots_per_s,ratio_ours_to_peer,ratio_least,ratio_most,ratio_of_medians,setting,instruction_set\n",
     );
     for row in rows {
-        let Answer {
-            errors,
-            shots,
-            shots_per_s,
-            ..
-        } = &row.answer;
+        let Answer { errors, shots, shots_per_s, .. } = &row.answer;
         let _ = writeln!(
             text,
             "\"{}\",{},{},{:e},{},{:.2e},{:.2e},{shots},{shots_per_s:.1},{:.2},{:.2},{:.2},{:.2},\"{}\",\"{}\"",
@@ -104,6 +99,7 @@ pub fn markdown(
     machine: &str,
 ) -> String {
     let mut text = format!("# Peers\n\n{machine}\n\n{NO_TOOL}\n");
+    text += &defaults(rows);
     let mut questions: Vec<(Case, f64)> = Vec::new();
     for row in rows {
         if !questions.contains(&(row.case, row.accuracy)) {
@@ -111,30 +107,63 @@ pub fn markdown(
         }
     }
     for (case, accuracy) in questions {
-        let _ = write!(
-            text,
-            "\n## {}, both ToFs within {accuracy:e}\n\n",
-            case.name()
-        );
+        let _ = write!(text, "\n## {}, both ToFs within {accuracy:e}\n\n", case.name());
         text += "| tool | version | shots/s | ours / tool | least to most | of medians | error incident | error reflected | setting | shots | instructions |\n";
         text += "|---|---|---:|---:|---:|---:|---:|---:|---|---:|---|\n";
-        let mut chosen: Vec<&Row> = rows
-            .iter()
-            .filter(|r| r.case == case && r.accuracy == accuracy)
-            .collect();
+        let mut chosen: Vec<&Row> =
+            rows.iter().filter(|r| r.case == case && r.accuracy == accuracy).collect();
         chosen.sort_by(|a, b| b.answer.shots_per_s.total_cmp(&a.answer.shots_per_s));
         chosen.iter().for_each(|row| text += &line(row));
     }
     text + &scale_table(scale)
 }
 
+/// What users get by defaults, beside the quickest peer.
+fn defaults(rows: &[Row]) -> String {
+    let mut text = String::from("\n## What users get\n\n");
+    text += "hertzchain with defaults, 9,000 shots (fewer where that would take long), each with an estimate of its \
+        error, beside the quickest peer, its setting searched for against converged values, and the quickest that is \
+        right enough with the accuracy as its tolerance.\n\n";
+    text += "| laws | accuracy | `hertzchain sweep`, shots/s | `hertzchain.ensemble`, shots/s | quickest peer, shots/s \
+        | sweep / peer | by the tolerance as asked, shots/s | sweep / peer |\n|---|---|---:|---:|---|---:|---|---:|\n";
+    for sweep in rows.iter().filter(|row| row.tool == "hertzchain sweep") {
+        let beside =
+            || rows.iter().filter(|row| row.case == sweep.case && row.accuracy == sweep.accuracy);
+        let python = beside().find(|row| row.tool == "hertzchain.ensemble");
+        let python = python.map_or("–".into(), |row| format!("{:.0}", row.answer.shots_per_s));
+        let peers = || {
+            beside().filter(|row| {
+                row.met() && !row.tool.contains("hertzchain") && !row.tool.contains("by hand")
+            })
+        };
+        let usual = |row: &&Row| row.tool.contains("as asked");
+        let cell = |peer: Option<&Row>| match peer {
+            None => "none | –".to_owned(),
+            Some(peer) => {
+                let name = peer.tool.split(", tolerance").next().unwrap_or(&peer.tool);
+                let ratio = peer.ratio.median / sweep.ratio.median;
+                format!("{:.0} ({name}) | {ratio:.1}", peer.answer.shots_per_s)
+            }
+        };
+        let _ = writeln!(
+            text,
+            "| {} | {:e} | {:.0} | {python} | {} | {} |",
+            sweep.case.name(),
+            sweep.accuracy,
+            sweep.answer.shots_per_s,
+            cell(quickest(peers().filter(|row| !usual(row)))),
+            cell(quickest(peers().filter(usual))),
+        );
+    }
+    text
+}
+
+fn quickest<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
+    rows.max_by(|a, b| a.answer.shots_per_s.total_cmp(&b.answer.shots_per_s))
+}
+
 fn line(row: &Row) -> String {
-    let Answer {
-        errors,
-        shots,
-        shots_per_s,
-        ..
-    } = &row.answer;
+    let Answer { errors, shots, shots_per_s, .. } = &row.answer;
     let missed = if row.met() { "" } else { " **missed**" };
     format!(
         "| {} | {} | {shots_per_s:.1} | {:.1} | {:.1}–{:.1} | {:.1} | {:.1e} | {:.1e}{missed} | {} | {shots} | {} |\n",

