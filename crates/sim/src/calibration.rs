@@ -120,6 +120,9 @@ const FIRST: f64 = 0.036;
 /// 10,001 shots more are right with a quarter of it.
 const SHORTEST: f64 = 0.017;
 
+/// Share of the calibration shots for which the first setting looked for is right enough.
+const NEARLY_ALL: f64 = 0.97;
+
 /// A setting is added if it leaves at most this share of the cost.
 const LESS: f64 = 0.95;
 
@@ -215,7 +218,12 @@ impl Calibration {
             chosen.tiers.push(Tier { setting, ..last });
         }
         let mut tried = Vec::new();
-        while let Some(trial) = sample.sooner(&rest, &mut tried) {
+        // First the cheapest that serves nearly all, then what is cheaper for some.
+        let uniform = sample.halved.last().is_some_and(|(setting, _)| setting.passed);
+        if uniform && let Some(trial) = sample.sooner(&rest, &mut tried, NEARLY_ALL) {
+            rest = chosen.add(trial);
+        }
+        while let Some(trial) = sample.sooner(&rest, &mut tried, 0.0) {
             rest = chosen.add(trial);
         }
         match chosen.tiers.is_empty() {
@@ -365,12 +373,13 @@ impl<'a> Sample<'a> {
         };
         let precision = Some(Precision::Double);
         let own = Setting { step: own.step.max(FIRST), ..own };
-        let setting = Setting { precision, openings: true, shapes: false, ..own };
+        let mut setting = Setting { precision, openings: true, shapes: false, ..own };
         let mut halved = vec![run(setting)];
+        // Where no maximum competes, shorter steps need not wait for whatever may come.
+        setting.passed = halved[0].1.iter().flatten().all(is_alone);
         for halving in 1..=MOST_HALVINGS {
             let step = own.step * 0.5_f64.powi(halving as i32);
-            let alone = halved[halving - 1].1.iter().flatten().all(is_alone);
-            if !alone && (!by_speed || plans[0].accuracy < LEAST_OF_COMPETING) {
+            if !setting.passed && (!by_speed || plans[0].accuracy < LEAST_OF_COMPETING) {
                 return Err("several maxima compete for the reflected pulse");
             }
             halved.push(run(Setting { step, ..setting }));
@@ -417,7 +426,8 @@ impl<'a> Sample<'a> {
             let shot = shot.as_ref()?;
             Some(record.error * shot.conditioning.forces / shot.accuracy_asked)
         });
-        Trial { expected, costs, reached, excess: quantile(all.collect(), 0.25), tier }
+        let share = right.iter().flatten().count() as f64 / right.len() as f64;
+        Trial { expected, share, costs, reached, excess: quantile(all.collect(), 0.25), tier }
     }
 
     /// For each calibration shot those about its speed.
@@ -465,8 +475,9 @@ impl<'a> Sample<'a> {
         }
     }
 
-    /// The setting that makes shots cheapest in front of others with which each costs `rest`.
-    fn sooner(&self, rest: &[f64], tried: &mut Vec<Tried>) -> Option<Trial> {
+    /// The setting that makes shots cheapest in front of others with which each costs `rest`, of
+    /// those that are right enough for a least share of them.
+    fn sooner(&self, rest: &[f64], tried: &mut Vec<Tried>, least_share: f64) -> Option<Trial> {
         let passed = self.exact.iter().flatten().all(is_alone);
         // Steps too long for strong losses make motion that never ends.
         let durations_s = self.exact.iter().flatten().map(|shot| shot.duration_s);
@@ -495,7 +506,8 @@ impl<'a> Sample<'a> {
             let trial = self.trial(&tried[at], rest);
             let shorter = trial.excess.max(1.0).powf(-HIGHEST_ORDER.recip());
             longest.extend((shorter > 0.0).then_some((setting, setting.step * shorter)));
-            best = Some(trial).filter(|trial| trial.expected < least).or(best);
+            let serves = trial.share >= least_share && trial.expected < least;
+            best = Some(trial).filter(|_| serves).or(best);
         }
         best
     }
@@ -508,6 +520,8 @@ struct Trial {
     costs: Vec<f64>,
     /// Their mean; infinite where one is wrong and does not show it.
     expected: f64,
+    /// Share of them that are right enough.
+    share: f64,
     /// Largest estimate of those that are right enough.
     reached: f64,
     /// Lower quartile of the estimates over the accuracy asked.
