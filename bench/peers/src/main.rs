@@ -36,11 +36,11 @@ const OUR_ACCURACIES: [f64; 8] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9
 /// Beads of the long chains.
 const LONG: [usize; 4] = [40, 4_000, 100_000, 1_000_000];
 
-/// `hertzchain-peers PYTHON FOLDER [quick]`, FOLDER being bench/peers.
+/// `hertzchain-peers PYTHON FOLDER [quick] [CASES]`, FOLDER being bench/peers; all cases when none is named.
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().collect();
     let [_, python, folder, rest @ ..] = arguments.as_slice() else {
-        anyhow::bail!("usage: hertzchain-peers PYTHON FOLDER [quick]");
+        anyhow::bail!("usage: hertzchain-peers PYTHON FOLDER [quick] [CASES]");
     };
     let folder = Path::new(folder);
     let quick = rest.iter().any(|word| word == "quick");
@@ -50,7 +50,9 @@ fn main() -> anyhow::Result<()> {
     let worker = Worker::start(python, &script.to_string_lossy())?;
     let mut session =
         Session { worker, quick, rows: Vec::new(), our_speeds: Vec::new(), lines: Vec::new() };
-    for case in Case::ALL {
+    let named = |case: &Case| rest.iter().any(|word| word == case.name());
+    let any = Case::ALL.iter().any(named);
+    for case in Case::ALL.into_iter().filter(|case| !any || named(case)) {
         session.run(case)?;
     }
     session.write(&folder.join("results"))
