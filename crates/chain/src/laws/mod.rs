@@ -5,6 +5,7 @@
 //! experiment file and the documentation enumerate the registry; nothing else
 //! changes. `docs/how-to/add-a-contact-law.md` walks through it.
 
+mod capillary_bridge;
 mod damping_brilliantov_1996;
 mod damping_cubic;
 mod damping_cubic_ungated;
@@ -52,6 +53,7 @@ pub static LAWS: &[Row] = &[
     row::<DampingLinear, 1>(),
     row::<DampingPower, 3>(),
     row::<FilmEntrained, 4>(),
+    row::<capillary_bridge::CapillaryBridge, 3>(),
 ];
 
 /// The row of a law by its name.

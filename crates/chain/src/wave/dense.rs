@@ -285,9 +285,13 @@ impl Piece<'_> {
             ContactMode::Cut => 0.0,
         };
         let smooth = frozen && mode == ContactMode::Closed;
-        match self.system.tension {
+        let force = match self.system.tension {
             Tension::Clipped if !smooth => force.max(0.0),
             _ => force,
+        };
+        match self.state.is_bridged(contact) {
+            true => force + self.system.pull_n(contact, overlap),
+            false => force,
         }
     }
 
@@ -337,15 +341,24 @@ impl Piece<'_> {
     fn seen_force(&self, contact: usize, theta: f64) -> f64 {
         let force = self.force(contact, theta);
         match self.system.tension {
-            Tension::Clipped => force.max(-self.system.static_force_n[contact]),
+            Tension::Clipped => force.max(self.least_force(contact, theta)),
             Tension::Allowed => force,
         }
     }
 
+    /// Dynamic force in N of a contact whose laws are cut.
+    fn least_force(&self, contact: usize, theta: f64) -> f64 {
+        let pull = match self.state.is_bridged(contact) {
+            true => self.system.pull_n(contact, self.overlap(contact, theta).0),
+            false => 0.0,
+        };
+        pull - self.system.static_force_n[contact]
+    }
+
     fn seen_force_rate(&self, contact: usize, theta: f64) -> f64 {
-        let least = -self.system.static_force_n[contact];
+        let least = || self.least_force(contact, theta);
         match self.system.tension {
-            Tension::Clipped if self.force(contact, theta) < least => 0.0,
+            Tension::Clipped if self.force(contact, theta) < least() => 0.0,
             _ => self.force_rate(contact, theta),
         }
     }
