@@ -15,6 +15,7 @@ mod ensemble_sensors;
 mod ensemble_sets;
 mod ensemble_work;
 mod film;
+mod film_drained;
 mod laws;
 mod paper;
 mod random_chains;

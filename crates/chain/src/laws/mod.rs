@@ -17,6 +17,7 @@ mod damping_viscoelastic;
 mod elastic_hertz;
 mod elastic_plastic_thornton;
 mod elastic_power;
+mod film_drained;
 mod film_entrained;
 mod term;
 
@@ -53,6 +54,7 @@ pub static LAWS: &[Row] = &[
     row::<DampingLinear, 1>(),
     row::<DampingPower, 3>(),
     row::<FilmEntrained, 4>(),
+    row::<film_drained::FilmDrained, 4>(),
     row::<capillary_bridge::CapillaryBridge, 3>(),
 ];
 

@@ -152,6 +152,12 @@ pub trait ContactState: Debug + Send + Sync {
     /// Begins anew at an overlap in m, at rest.
     fn begin(&mut self, overlap_m: f64);
 
+    /// Whether it goes on where the contact is open: overlaps are then below 0 across a gap,
+    /// and it does not begin anew there.
+    fn acts_across(&self) -> bool {
+        false
+    }
+
     /// Force in N, and rates of change of the numbers in m/s.
     fn force_and_rates(&self, numbers_m: [f64; 3], contact: Closed) -> (f64, [f64; 3]);
 

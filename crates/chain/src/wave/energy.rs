@@ -93,11 +93,12 @@ pub(super) fn stored(system: &System, state: &WaveState, law: Option<&str>) -> f
             }
             for c in section.contacts.clone() {
                 let overlap = state.overlap(system, c);
-                if overlap > 0.0 && state.mode[c] != ContactMode::Open {
-                    if info.nature == Nature::WithState {
+                let closed = overlap > 0.0 && state.mode[c] != ContactMode::Open;
+                if info.nature == Nature::WithState {
+                    if closed || state.states.acts_across(c) {
                         sum += state.states.energy_j(c, overlap);
-                        continue;
                     }
+                } else if closed {
                     let largest = state.largest[c].max(overlap);
                     sum += term.law.energy(
                         &term.columns,

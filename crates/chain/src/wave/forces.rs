@@ -178,7 +178,12 @@ impl Pass {
         self.closed_force[contacts.clone()].fill(0.0);
         self.across[contacts.clone()].fill(0.0);
         if system.has_states {
-            self.closed_force[contacts.clone()].copy_from_slice(&self.of_states[contacts.clone()]);
+            for c in contacts.clone() {
+                match self.touching[c] > 0.0 {
+                    true => self.closed_force[c] = self.of_states[c],
+                    false => self.across[c] = self.of_states[c],
+                }
+            }
         }
         for section in system.sections.iter() {
             let part =

@@ -201,7 +201,11 @@ impl GateWatch {
 
     /// A change of a state's behaviour, unless the contact is almost at rest.
     fn change_of_state(&self, piece: &Piece<'_>, pass: &Pass, contact: usize) -> Option<Change> {
-        let closed = piece.state.mode[contact] == ContactMode::Closed;
+        let closed = match piece.state.mode[contact] {
+            ContactMode::Closed => true,
+            ContactMode::Open => piece.state.states.acts_across(contact),
+            ContactMode::Cut => false,
+        };
         let moves = piece.system.has_states && pass.rate[contact].abs() > 1e-9 * self.speed;
         let until = (closed && moves).then(|| piece.until_change(contact, 1.0))??;
         (until < -LEAST_CHANGE).then_some(Change::State)
