@@ -256,8 +256,14 @@ fn bridges_last_from_a_shot_to_the_next() {
         let pulled = bridged[contact] && rest.overlap_m < 0.0;
         assert_eq!(rest.force_n < 0.0, pulled, "{contact}: {rest:?} {bridged:?}");
     }
-    let still = Limits::until(1e-6);
-    assert!(run(&shot, &method, still, &mut []).is_ok());
+    // Beads laid against each other are bridged, and balanced.
+    let mut beads = State::laid(&system, &[]);
+    beads.bridged.fill(false);
+    beads.displacement_m[0] -= 1e-3;
+    let laid = system.from_state(&beads).unwrap();
+    let outcome = run(&laid, &method, Limits::until(1e-4), &mut []).unwrap();
+    assert_eq!(outcome.bridged, [false, true, true, true, true]);
+    assert!(outcome.velocity_m_s.iter().all(|v| v.abs() < 1e-15), "{outcome:?}");
 }
 
 #[test]
