@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should fail")]
 
 mod balances;
+mod bridge;
 mod common;
 mod convergence;
 mod ensemble_accuracy;
@@ -14,6 +15,7 @@ mod ensemble_sensors;
 mod ensemble_sets;
 mod ensemble_work;
 mod film;
+mod film_drained;
 mod laws;
 mod paper;
 mod random_chains;

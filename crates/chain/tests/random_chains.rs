@@ -38,6 +38,8 @@ fn damping() -> impl Strategy<Value = Arc<dyn Law>> {
             (_, "rate_exponent") => 1.0 + 0.3 * size,
             ("damping_kuwabara_kono", _) => 3e3 * size,
             ("damping_linear", _) => 4.0 * size,
+            (_, "surface_tension") => 0.03 * size,
+            (_, "volume") => 1e-10 * size,
             _ => 50.0 * size,
         };
         let required = row.info.parameters.iter();
@@ -76,11 +78,13 @@ fn chain() -> impl Strategy<Value = Chain> {
         |(beads, ends, contacts)| {
             let (striker, speed_m_s, far, push, incline_rad) = ends;
             let (mut laws, clipped, gap_m) = contacts;
-            let mut with_state = 0;
-            laws.retain(|law| {
-                with_state += usize::from(law.info().nature == Nature::WithState);
-                law.info().nature != Nature::WithState || with_state == 1
-            });
+            for nature in [Nature::WithState, Nature::Adhesive] {
+                let mut of_nature = 0;
+                laws.retain(|law| {
+                    of_nature += usize::from(law.info().nature == nature);
+                    law.info().nature != nature || of_nature == 1
+                });
+            }
             laws.push(common::hertz());
             let last = beads.len();
             // A chain that nothing holds can be neither pushed nor inclined.

@@ -16,7 +16,11 @@ fn state(bodies: usize) -> impl Strategy<Value = State> {
     (size, prop_oneof![Just(0.0), Just(0.1)], places, speeds).prop_map(
         |(far, fast, places, speeds)| {
             let scaled = |values: Vec<f64>, by: f64| values.into_iter().map(|x| x * by).collect();
-            State { displacement_m: scaled(places, far), velocity_m_s: scaled(speeds, fast) }
+            State {
+                displacement_m: scaled(places, far),
+                velocity_m_s: scaled(speeds, fast),
+                bridged: Vec::new(),
+            }
         },
     )
 }

@@ -46,7 +46,7 @@ pub struct SectionSpec {
 /// Key of the contact that a law's K or A belongs to.
 pub(crate) const CONTACT: &str = "contact";
 
-/// Keys of what a liquid gives to a law.
+/// Keys of the oil that a liquid gives to a law.
 const VISCOSITY: &str = "viscosity";
 const PRESSURE_VISCOSITY: &str = "pressure_viscosity";
 
@@ -66,8 +66,8 @@ impl LawSpec {
     }
 
     pub(crate) fn is_dissipative(&self) -> bool {
-        // A state pushes back only beside an elastic law.
-        matches!(self.row.info.nature, Nature::Dissipative | Nature::WithState)
+        // A state pushes back only beside an elastic law; a bridge pulls.
+        matches!(self.row.info.nature, Nature::Dissipative | Nature::WithState | Nature::Adhesive)
     }
 
     /// The value that the file gives to a parameter.
@@ -160,33 +160,28 @@ fn law(node: &Node, units: Units, liquid: Option<&Liquid>) -> Result<LawSpec, Fi
         }
     }
     if row.info.parameters.iter().any(|p| p.source == Source::Liquid) {
-        fill_oil(row, node, (units, liquid), &mut given)?;
+        fill_liquid(row, node, (units, liquid), &mut given)?;
     }
     let span = node.span.clone();
     Ok(LawSpec { row, given, references, span })
 }
 
-/// Fills in what a law leaves to the file's liquid: η, and α, which an oil with that η must
-/// state, as a film of oil without it is another one.
-fn fill_oil(
+/// Fills in what a law leaves to the file's liquid. An oil with an η must state its α, as a film
+/// of oil without it is another one.
+fn fill_liquid(
     row: &Row,
     node: &Node,
     (units, liquid): (Units, Option<&Liquid>),
     given: &mut Vec<(&'static str, f64)>,
 ) -> Result<(), FileProblem> {
-    let viscosity = liquid.and_then(Liquid::dynamic_viscosity_pa_s);
-    let thickening = liquid.and_then(|liquid| liquid.pressure_viscosity_per_pa);
-    let from_liquid = node.get(VISCOSITY).is_none();
-    let wanted = [(VISCOSITY, viscosity, true), (PRESSURE_VISCOSITY, thickening, from_liquid)];
-    for (name, value, is_needed) in wanted {
-        let mut parameters = row.info.parameters.iter();
-        let open = parameters.find(|p| p.name == name && node.get(name).is_none());
-        match (open, value) {
-            (Some(_), Some(value)) => given.push((name, value)),
-            (Some(parameter), None) if is_needed => {
-                return Err(missing(parameter, row, node, units).help(Liquid::SUFFICES));
+    for parameter in row.info.parameters.iter().filter(|p| node.get(p.name).is_none()) {
+        let oil = parameter.name == PRESSURE_VISCOSITY && node.get(VISCOSITY).is_none();
+        match liquid.and_then(|liquid| liquid.value(parameter.name)) {
+            Some(value) => given.push((parameter.name, value)),
+            None if oil || parameter.source == Source::Liquid => {
+                return Err(missing(parameter, row, node, units).help(Liquid::suffices(row)));
             }
-            _ => {}
+            None => {}
         }
     }
     Ok(())

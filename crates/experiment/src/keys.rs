@@ -179,7 +179,8 @@ const FREQUENCY: ValueLimits = ValueLimits::closed(1e-9, 1e18, "from 1e-9 Hz to 
 const GRAVITY: ValueLimits = ValueLimits::closed(0.0, 1e12, "from 0 to 1e12 m/s^2");
 const POISSON: ValueLimits = ValueLimits::open(-1.0, 1.0, false, "between -1 and 1");
 const ACCURACY: ValueLimits = ValueLimits::closed(1e-13, 1e-2, "between 1e-13 and 1e-2");
-const INCLINE: ValueLimits = ValueLimits::closed(0.0, FRAC_PI_2, "between 0 and 90 deg");
+pub(crate) const QUARTER_TURN: ValueLimits =
+    ValueLimits::closed(0.0, FRAC_PI_2, "between 0 and 90 deg");
 const FRICTION: ValueLimits = ValueLimits::closed(0.0, 10.0, "from 0 to 10");
 const RATIO: ValueLimits = ValueLimits::open(0.0, 100.0, false, "positive and below 100");
 const DISPLACEMENT: KeyKind =
@@ -415,7 +416,7 @@ static NEAR_END: Variants = Variants {
 };
 
 static TRACK: Fields = table! { "[track]";
-    incline: Quantity("rad", INCLINE), "incline, the wall below; default 0";
+    incline: Quantity("rad", QUARTER_TURN), "incline, the wall below; default 0";
     gravity: Quantity("m/s^2", GRAVITY), "gravity; default 9.80665 m/s^2";
     friction: Quantity("1", FRICTION), "dry friction of beads on the track, between shots; default 0.05";
 };

@@ -2,10 +2,12 @@
 
 use crate::bodies::Materials;
 use crate::keys::{
-    MOST_BEADS, OIL, OIL_TEMPERATURE, Quantity, SPEED, Text, choice, not_negative, positive,
+    MOST_BEADS, OIL, OIL_TEMPERATURE, QUARTER_TURN, Quantity, SPEED, Text, choice, not_negative,
+    positive,
 };
 use crate::report::{FileProblem, brief};
 use crate::values::{TableView, Units, record};
+use hertzchain_chain::laws::Row;
 use hertzchain_chain::{Gap, Initial, Motion, Push};
 use std::ops::Range;
 use std::path::Path;
@@ -61,7 +63,8 @@ impl Solver {
 const ROOM_K: f64 = 298.15;
 
 record! {
-    /// A liquid: its viscosity at its temperature, for the laws of films and for reports.
+    /// A liquid: its viscosity at its temperature, for the laws of films and for reports; its
+    /// surface and volume, for bridges.
     Liquid "[liquid]"
     name: String = name "liquid".to_owned(), Text, "name of the liquid";
     kinematic_viscosity_m2_s: Option<f64> = kinematic_viscosity None, positive("m^2/s"), "kinematic viscosity";
@@ -70,12 +73,35 @@ record! {
     temperature_k: f64 = temperature ROOM_K, Quantity("K", OIL_TEMPERATURE), "temperature; default 25 degC";
     density_kg_m3: Option<f64> = density None, positive("kg/m^3"), "density, with two viscosities at 40 °C";
     pressure_viscosity_per_pa: Option<f64> = pressure_viscosity None, not_negative("1/Pa"), "pressure–viscosity coefficient α";
+    surface_tension_n_m: Option<f64> = surface_tension None, not_negative("N/m"), "surface tension γ";
+    contact_angle_rad: Option<f64> = contact_angle None, Quantity("rad", QUARTER_TURN), "contact angle on the bodies; default 0 deg";
+    volume_m3: Option<f64> = volume None, not_negative("m^3"), "volume in each wet contact";
 }
 
 impl Liquid {
-    /// Advice where a law needs an oil.
-    pub(crate) const SUFFICES: &str = "or give the oil in [liquid]: `kinematic_viscosity_40`, `kinematic_viscosity_100`, \
-         `density` and `pressure_viscosity` (0 for an oil that pressure does not thicken)";
+    /// Advice where a law needs a liquid.
+    pub(crate) fn suffices(row: &Row) -> &'static str {
+        let of_bridge = row.info.parameters.iter().any(|p| p.name == "surface_tension");
+        match of_bridge {
+            true => "or give `surface_tension` and `volume` in [liquid]",
+            false => {
+                "or give the oil in [liquid]: `kinematic_viscosity_40`, `kinematic_viscosity_100`, \
+                 `density` and `pressure_viscosity` (0 for an oil that pressure does not thicken)"
+            }
+        }
+    }
+
+    /// What it gives to the parameter of a law with this name.
+    pub(crate) fn value(&self, parameter: &str) -> Option<f64> {
+        match parameter {
+            "viscosity" => self.dynamic_viscosity_pa_s(),
+            "pressure_viscosity" => self.pressure_viscosity_per_pa,
+            "surface_tension" => self.surface_tension_n_m,
+            "contact_angle" => self.contact_angle_rad,
+            "volume" => self.volume_m3,
+            _ => None,
+        }
+    }
 
     /// Dynamic viscosity in Pa s at the liquid's temperature T.
     ///

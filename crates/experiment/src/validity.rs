@@ -137,7 +137,7 @@ impl LawTerm {
     /// Work of pressing two bodies together slowly.
     fn work_j(&self, overlap_m: f64) -> f64 {
         match self.law.info().nature {
-            Nature::Dissipative | Nature::WithState => 0.0,
+            Nature::Dissipative | Nature::WithState | Nature::Adhesive => 0.0,
             Nature::Elastic => self.law.energy(&self.columns, 0, overlap_m, overlap_m),
             // ∫ F dδ by the midpoint rule: a part of it is not stored.
             Nature::ElasticPlastic => {
@@ -193,7 +193,7 @@ impl<'a> Collision<'a> {
             match law.row.info.nature {
                 Nature::Elastic => parameters.any(|p| p.source == Source::Materials),
                 Nature::ElasticPlastic => true,
-                Nature::Dissipative | Nature::WithState => false,
+                Nature::Dissipative | Nature::WithState | Nature::Adhesive => false,
             }
         })
     }

@@ -89,3 +89,42 @@ fn viscosities_that_do_not_go_together_are_mistakes_at_their_place() {
     has(changed("\"25 degC\"", "\"25 K\""), "must be from -50 degC to 200 degC");
     has(changed("\"25 degC\"", "\"25 s\""), "expected a temperature in K, such as \"25 degC\"");
 }
+
+/// A film and a bridge of a liquid with these keys.
+fn bridged(liquid: &str) -> String {
+    let text = film_presets()[0].text.replacen("[liquid]\n", &format!("[liquid]\n{liquid}\n"), 1);
+    text.replacen("\"film_entrained\"", "\"film_entrained\", \"capillary_bridge\"", 1)
+}
+
+#[test]
+fn a_bridge_takes_surface_and_volume_from_the_liquid() {
+    let bridge = |experiment: &Experiment| {
+        let mut laws = experiment.sections().iter().flat_map(|section| section.laws.clone());
+        laws.find(|law| law.name() == "capillary_bridge").unwrap().given
+    };
+    let text = bridged("surface_tension = \"30 mN/m\"\nvolume = \"0.1 µl\"");
+    let oil = Experiment::from_text("bridge.toml", &text).unwrap();
+    assert_eq!(bridge(&oil), [("surface_tension", 0.03), ("volume", 1e-10)]);
+    let wetting = oil.set_text(&[("liquid.contact_angle", "30 deg")]).unwrap();
+    assert_eq!(bridge(&wetting)[2].0, "contact_angle");
+    // 2πRγ cos θ in each contact of the row's wet section, at rest beside 0.24 N.
+    let (chain, _) = wetting.chain(None).unwrap();
+    let system = hertzchain_chain::System::new(&chain).unwrap();
+    let [dry, wet] = [3, 20].map(|contact| system.static_contact(contact).overlap_m);
+    let pull_n = 2.0 * std::f64::consts::PI * 6.35e-3 * 0.03 * 0.75_f64.sqrt();
+    // A difference of two overlaps, to 1e-13 of each.
+    let more = (wet / dry).powf(1.5) - 1.0;
+    assert!((more / (pull_n / 0.24) - 1.0).abs() < 1e-9, "{more}");
+}
+
+#[test]
+fn a_liquid_without_volume_or_with_a_negative_one_is_a_mistake() {
+    let problem = only(&bridged("surface_tension = \"30 mN/m\"")).one_line();
+    assert!(problem.contains("needs `volume`"), "{problem}");
+    let problem = only(&bridged("volume = \"-1 µl\"")).one_line();
+    assert!(problem.contains("0 or more"), "{problem}");
+    let problem = only(&bridged("contact_angle = \"91 deg\"")).one_line();
+    assert!(problem.contains("between 0 and 90 deg"), "{problem}");
+    let problem = only(&bridged("volume = \"1 mm\"")).one_line();
+    assert!(problem.contains("expected a volume"), "{problem}");
+}

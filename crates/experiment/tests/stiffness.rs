@@ -7,11 +7,12 @@ use hertzchain_chain::{Chain, System};
 use std::f64::consts::PI;
 
 /// Laws that share K, with what else they need.
-const SHARING: [&str; 4] = [
+const SHARING: [&str; 5] = [
     "law = \"damping_viscoelastic\", relaxation_time",
     "law = \"damping_brilliantov_1996\", relaxation_time",
     "law = \"damping_tsuji\", damping_ratio",
     "law = \"film_entrained\", viscosity",
+    "law = \"film_drained\", viscosity",
 ];
 
 const STEEL: &str = "[materials.steel]\nyoung_modulus = \"213 GPa\"\npoisson_ratio = 0.3\n";

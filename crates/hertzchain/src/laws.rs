@@ -33,6 +33,7 @@ pub fn nature(info: &LawInfo) -> &'static str {
         Nature::Dissipative => "dissipative",
         Nature::ElasticPlastic => "elastic-plastic",
         Nature::WithState => "with state",
+        Nature::Adhesive => "adhesive",
     }
 }
 

@@ -49,7 +49,7 @@ fn shots(speed_m_s: f64, spread: [f64; 2], of: impl Fn(f64, &mut Shot)) -> Vec<S
 
 /// Claims look at gaps, not at where bodies are.
 fn nowhere() -> State {
-    State { displacement_m: Vec::new(), velocity_m_s: Vec::new() }
+    State { displacement_m: Vec::new(), velocity_m_s: Vec::new(), bridged: Vec::new() }
 }
 
 /// A rig that shows all that the paper says.

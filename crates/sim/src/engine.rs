@@ -189,7 +189,7 @@ pub(crate) fn suits(plan: &Plan) -> bool {
 
 /// Whether a law is a function of overlap, rate and the largest overlap.
 fn has_no_state(law: &Arc<dyn Law>) -> bool {
-    law.info().nature != Nature::WithState
+    !matches!(law.info().nature, Nature::WithState | Nature::Adhesive)
 }
 
 /// Steps with which a shot is compared, over its own, and the weight of the change that they

@@ -188,6 +188,10 @@ fn check(shot: &Shot<'_>, settings: &Settings) -> Result<(), SolveError> {
         let why = "a law whose contacts have a state, as film_entrained, needs the wave loop";
         return Err(SolveError::Refused(why.to_owned()));
     }
+    if !system.bridged.is_empty() {
+        let why = "a liquid bridge needs the wave loop";
+        return Err(SolveError::Refused(why.to_owned()));
+    }
     let missing = settings.sensors.iter().find(|sensor| !system.has(**sensor));
     missing
         .map_or(Ok(()), |sensor| Err(SolveError::Refused(format!("the chain has no {sensor:?}"))))

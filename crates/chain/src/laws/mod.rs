@@ -5,6 +5,7 @@
 //! experiment file and the documentation enumerate the registry; nothing else
 //! changes. `docs/how-to/add-a-contact-law.md` walks through it.
 
+mod capillary_bridge;
 mod damping_brilliantov_1996;
 mod damping_cubic;
 mod damping_cubic_ungated;
@@ -16,6 +17,7 @@ mod damping_viscoelastic;
 mod elastic_hertz;
 mod elastic_plastic_thornton;
 mod elastic_power;
+mod film_drained;
 mod film_entrained;
 mod term;
 
@@ -52,6 +54,8 @@ pub static LAWS: &[Row] = &[
     row::<DampingLinear, 1>(),
     row::<DampingPower, 3>(),
     row::<FilmEntrained, 4>(),
+    row::<film_drained::FilmDrained, 4>(),
+    row::<capillary_bridge::CapillaryBridge, 3>(),
 ];
 
 /// The row of a law by its name.

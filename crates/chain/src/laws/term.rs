@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// One closed contact, as a law sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Closed {
-    /// Overlap δ ≥ 0 in m.
+    /// Overlap δ ≥ 0 in m; for a law that is [`Nature::Adhesive`] below 0 across a gap.
     pub overlap: f64,
     /// √δ, given by the loop so that laws need no square root of their own.
     pub root: f64,
@@ -38,6 +38,9 @@ pub enum Nature {
     ElasticPlastic,
     /// Part is stored, part is lost, by a [`ContactState`] of each contact.
     WithState,
+    /// It pulls, from touch until a gap at which it lets go: [`Term::rupture`]. Work across
+    /// the gap comes back; what it holds at touch is lost when it forms.
+    Adhesive,
 }
 
 /// Where a parameter's value comes from when the user gives none.
@@ -132,6 +135,11 @@ pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
         0.0
     }
 
+    /// Gap in m at which a law that is [`Nature::Adhesive`] lets go.
+    fn rupture(_k: &[f64; C]) -> f64 {
+        0.0
+    }
+
     /// What one contact remembers, if the law is [`Nature::WithState`].
     fn state(_k: &[f64; C]) -> Option<Box<dyn ContactState>> {
         None
@@ -143,6 +151,12 @@ pub trait Term<const C: usize>: Debug + Clone + Send + Sync + 'static {
 pub trait ContactState: Debug + Send + Sync {
     /// Begins anew at an overlap in m, at rest.
     fn begin(&mut self, overlap_m: f64);
+
+    /// Whether it goes on where the contact is open: overlaps are then below 0 across a gap,
+    /// and it does not begin anew there.
+    fn acts_across(&self) -> bool {
+        false
+    }
 
     /// Force in N, and rates of change of the numbers in m/s.
     fn force_and_rates(&self, numbers_m: [f64; 3], contact: Closed) -> (f64, [f64; 3]);
@@ -269,6 +283,11 @@ pub trait Law: Debug + Send + Sync {
     /// Energy in J that one contact would give back.
     fn energy(&self, k: &Columns, at: usize, overlap: f64, largest: f64) -> f64;
 
+    /// Gap in m at which a law that is [`Nature::Adhesive`] lets go.
+    fn rupture(&self, _k: &Columns, _at: usize) -> f64 {
+        0.0
+    }
+
     /// What one contact remembers, if the law is [`Nature::WithState`].
     fn state(&self, _k: &Columns, _at: usize) -> Option<Box<dyn ContactState>> {
         None
@@ -340,6 +359,10 @@ impl<T: Term<C>, const C: usize> Law for Of<T, C> {
 
     fn energy(&self, k: &Columns, at: usize, overlap: f64, largest: f64) -> f64 {
         T::energy(&k.at(at), overlap, largest)
+    }
+
+    fn rupture(&self, k: &Columns, at: usize) -> f64 {
+        T::rupture(&k.at(at))
     }
 
     fn state(&self, k: &Columns, at: usize) -> Option<Box<dyn ContactState>> {

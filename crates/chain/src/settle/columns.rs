@@ -75,7 +75,8 @@ impl Columns {
     }
 
     /// Forces of all contacts at the bodies' places.
-    pub(super) fn feel(&mut self, system: &System, x: &[f64]) {
+    pub(super) fn feel(&mut self, system: &System, state: &mut State) {
+        let x = &state.displacement_m;
         let Self { touch, offset, seen, set, .. } = self;
         dispatch!(set.level(), simd => simd.vectorize(
             #[inline(always)]
@@ -87,6 +88,9 @@ impl Columns {
         let contacts = system.contacts();
         let force = &mut self.force[1..=contacts];
         add_laws(system, self.set, &self.touch, force);
+        if !system.bridged.is_empty() {
+            add_bridges(system, &self.offset, x, &mut state.bridged, force);
+        }
         if self.striker_gone {
             // A law that acts across gaps must not feel it either.
             force[0] = 0.0;
@@ -154,6 +158,23 @@ fn add_laws(system: &System, set: InstructionSet, touch: &TouchColumns, force: &
     if system.tension == Tension::Clipped {
         for force in force {
             *force = force.max(0.0);
+        }
+    }
+}
+
+/// Pulls of liquid bridges, which form where bodies touch.
+fn add_bridges(
+    system: &System,
+    offset: &[f64],
+    x: &[f64],
+    bridged: &mut [bool],
+    force: &mut [f64],
+) {
+    for (contact, (force, bridged)) in force.iter_mut().zip(bridged).enumerate() {
+        let overlap = offset[contact] - (x[contact + 1] - x[contact]);
+        *bridged = overlap >= 0.0 || (*bridged && !system.is_beyond_bridge(contact, overlap));
+        if *bridged {
+            *force += system.pull_n(contact, overlap);
         }
     }
 }

@@ -10,7 +10,7 @@
 //! measured accuracy.
 //!
 //! Friction is ours, the paper has none. Rolling is not modelled, and laws with a
-//! state add nothing: contacts with an entrained film are dry between shots.
+//! state add nothing: contacts with a film are dry between shots. Liquid bridges pull.
 
 mod columns;
 mod pace;

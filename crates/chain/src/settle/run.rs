@@ -35,6 +35,7 @@ pub(super) struct Relaxation<'a> {
 
 impl<'a> Relaxation<'a> {
     pub(super) fn new(system: &'a System, slow: &'a SlowPhase, state: &'a mut State) -> Self {
+        state.bridged.resize(system.bridged.len(), false);
         Self {
             columns: Columns::new(system, slow, state),
             pace: Pace::new(system, slow.step, LONGEST * slow.stuck_for_s),
@@ -57,7 +58,7 @@ impl<'a> Relaxation<'a> {
         // Velocities lag half a step behind positions, but not at the start.
         let mut kick_s = 0.0;
         loop {
-            self.columns.feel(self.system, &self.state.displacement_m);
+            self.columns.feel(self.system, self.state);
             if self.steps == self.next_look && self.look()? {
                 return Ok(self.rest());
             }

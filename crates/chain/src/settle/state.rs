@@ -10,6 +10,9 @@ pub struct State {
     pub displacement_m: Vec<f64>,
     /// Velocities in m/s, toward the wall.
     pub velocity_m_s: Vec<f64>,
+    /// Contacts that have touched and not parted as far as a liquid bridge bears; empty in
+    /// a chain without bridges.
+    pub bridged: Vec<bool>,
 }
 
 impl State {
@@ -19,6 +22,7 @@ impl State {
         Self {
             displacement_m: displaced.map(|(origin, x)| origin + x).collect(),
             velocity_m_s: system.velocity_m_s.clone(),
+            bridged: system.bridged.clone(),
         }
     }
 
@@ -32,7 +36,11 @@ impl State {
             let apart = gap.map_or(0.0, |gap| system.rest_overlap_m(contact) + gap);
             displacement_m[contact] = displacement_m[contact + 1] - apart;
         }
-        Self { velocity_m_s: vec![0.0; displacement_m.len()], displacement_m }
+        Self {
+            velocity_m_s: vec![0.0; displacement_m.len()],
+            displacement_m,
+            bridged: vec![false; system.bridged.len()],
+        }
     }
 
     /// At the end of a shot of the wave loop.
@@ -41,6 +49,7 @@ impl State {
         Self {
             displacement_m: displaced.map(|(origin, x)| origin + x).collect(),
             velocity_m_s: outcome.velocity_m_s.clone(),
+            bridged: outcome.bridged.clone(),
         }
     }
 
@@ -55,6 +64,9 @@ impl State {
         }
         if let Some(velocity) = self.velocity_m_s.first_mut() {
             *velocity = speed_m_s;
+        }
+        if let Some(bridged) = self.bridged.first_mut() {
+            *bridged = false;
         }
     }
 

@@ -45,6 +45,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
         },
         has_memory: false,
         has_states: false,
+        bridged: Vec::new(),
         displacement_m: vec![0.0; chain.beads.len() + 2],
         velocity_m_s: vec![0.0; chain.beads.len() + 2],
         origin_m: vec![0.0; chain.beads.len() + 2].into(),
@@ -62,6 +63,10 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
         terms.any(|term| term.law.info().nature == nature)
     };
     (system.has_memory, system.has_states) = (has(Nature::ElasticPlastic), has(Nature::WithState));
+    if system.sections.iter().any(|section| section.bridge.is_some()) {
+        // The striker has not touched bead 1 yet.
+        system.bridged = (0..=chain.beads.len()).map(|c| c > 0 || !system.has_striker).collect();
+    }
     system.inverse_mass = system.mass_kg.iter().map(|mass| mass.recip()).collect();
     settle(chain, &pairs, &mut system)?;
     set_in_motion(chain, &mut system);
@@ -103,19 +108,24 @@ fn section_columns(
     pairs: &[Option<BeadPair>],
 ) -> Result<SectionColumns, ChainError> {
     let contacts = *section.contacts.start()..*section.contacts.end() + 1;
-    let (mut gated, mut ungated) = (Vec::new(), Vec::new());
+    let (mut gated, mut ungated, mut bridge) = (Vec::new(), Vec::new(), None);
     for law in &section.laws {
-        let term =
-            TermColumns { columns: columns(law, pairs, contacts.clone())?, law: law.clone() };
-        if law.info().gated { gated.push(term) } else { ungated.push(term) }
+        let columns = columns(law, pairs, contacts.clone())?;
+        let (term, info) = (TermColumns { columns, law: law.clone() }, law.info());
+        match info.nature {
+            Nature::Adhesive => bridge = Some(term),
+            _ if info.gated => gated.push(term),
+            _ => ungated.push(term),
+        }
     }
-    let states = section.laws.iter().filter(|law| law.info().nature == Nature::WithState);
-    if states.count() > 1 {
-        let (first, last) = (section.contacts.start(), section.contacts.end());
-        let what = format!("contacts {first} to {last} have more than one law with a state");
-        return Err(ChainError::Layout(what));
+    for (nature, what) in [(Nature::WithState, "law with a state"), (Nature::Adhesive, "bridge")] {
+        if section.laws.iter().filter(|law| law.info().nature == nature).count() > 1 {
+            let (first, last) = (section.contacts.start(), section.contacts.end());
+            let what = format!("contacts {first} to {last} have more than one {what}");
+            return Err(ChainError::Layout(what));
+        }
     }
-    Ok(SectionColumns { contacts, gated, ungated })
+    Ok(SectionColumns { contacts, gated, ungated, bridge })
 }
 
 /// A law's coefficients over contacts; neighbours that join alike are asked once.
@@ -187,8 +197,11 @@ fn settle(
     system: &mut System,
 ) -> Result<(), ChainError> {
     let loads = loads(chain, system);
-    let alike =
-        |b: usize, c: usize| pairs[b] == pairs[c] && system.section_of[b] == system.section_of[c];
+    let alike = |b: usize, c: usize| {
+        pairs[b] == pairs[c]
+            && system.section_of[b] == system.section_of[c]
+            && system.bridged.get(b) == system.bridged.get(c)
+    };
     check_equilibrium(chain, system, &loads)?;
     let exists = |c: usize| match c {
         0 => !matches!(chain.start, Start::Free),
@@ -209,8 +222,11 @@ fn settle(
     }
     for gap in &chain.gaps {
         if loads[gap.contact] == 0.0 && gap.gap_m > 0.0 && exists(gap.contact) {
-            offset_m[gap.contact] = -gap.gap_m;
+            (offset_m[gap.contact], force_n[gap.contact]) = (-gap.gap_m, 0.0);
         }
+    }
+    for (contact, bridged) in system.bridged.iter_mut().enumerate() {
+        *bridged &= offset_m[contact] >= 0.0;
     }
     (system.offset_m, system.static_force_n) = (offset_m.into(), force_n.into());
     Ok(())

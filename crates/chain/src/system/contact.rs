@@ -80,6 +80,45 @@ impl System {
         section.terms().map(of_term).sum()
     }
 
+    /// What a contact's liquid bridge, if it has one, gives to a reader of its law.
+    fn of_bridge(&self, contact: usize, of: impl Fn(&TermColumns, usize) -> f64) -> f64 {
+        let section = self.section(contact);
+        let bridge = section.and_then(|section| Some((section, section.bridge.as_ref()?)));
+        bridge.map_or(0.0, |(section, bridge)| of(bridge, contact - section.contacts.start))
+    }
+
+    /// Force in N, 0 or below, of a bridged contact's liquid at an overlap in m, negative across a gap.
+    pub(crate) fn pull_n(&self, contact: usize, overlap: f64) -> f64 {
+        let closed = Closed { overlap, root: 0.0, rate: 0.0, largest: 0.0 };
+        self.of_bridge(contact, |bridge, at| bridge.law.force(&bridge.columns, at, closed))
+    }
+
+    /// Energy in J of a bridged contact's liquid, 0 where the bridge ruptures.
+    pub(crate) fn bridge_energy_j(&self, contact: usize, overlap: f64) -> f64 {
+        let energy =
+            |bridge: &TermColumns, at| bridge.law.energy(&bridge.columns, at, overlap, overlap);
+        self.of_bridge(contact, energy)
+    }
+
+    /// Gap in m at which a contact's bridge ruptures.
+    pub(crate) fn rupture_m(&self, contact: usize) -> f64 {
+        self.of_bridge(contact, |bridge, at| bridge.law.rupture(&bridge.columns, at))
+    }
+
+    /// Whether an overlap in m is a gap that a contact's bridge, if it has one, does not bear.
+    pub(crate) fn is_beyond_bridge(&self, contact: usize, overlap: f64) -> bool {
+        let rupture_m = self.rupture_m(contact);
+        rupture_m > 0.0 && -overlap > rupture_m
+    }
+
+    /// The pull before the shot.
+    pub(crate) fn pull_at_rest_n(&self, contact: usize, overlap: f64) -> f64 {
+        match self.bridged.get(contact) {
+            Some(true) => self.pull_n(contact, overlap),
+            _ => 0.0,
+        }
+    }
+
     /// Sum of the terms that act across a gap, in N.
     pub(crate) fn ungated_force(&self, contact: usize, closed: Closed) -> f64 {
         let force = |term: &TermColumns, at| term.law.force(&term.columns, at, closed);

@@ -35,9 +35,12 @@ pub(crate) struct SectionColumns {
     pub contacts: Range<usize>,
     pub gated: Vec<TermColumns>,
     pub ungated: Vec<TermColumns>,
+    /// A liquid bridge: outside the sum that is gated and cut.
+    pub bridge: Option<TermColumns>,
 }
 
 impl SectionColumns {
+    /// All terms but the bridge.
     pub(crate) fn terms(&self) -> impl Iterator<Item = &TermColumns> {
         self.gated.iter().chain(&self.ungated)
     }
@@ -93,6 +96,9 @@ pub struct System {
     pub(crate) has_memory: bool,
     /// Whether a law has a state of its own in each contact.
     pub(crate) has_states: bool,
+    /// Contacts that a liquid bridge would join before the shot, whether or not their section
+    /// has one; empty where no section has.
+    pub(crate) bridged: Vec<bool>,
     pub(crate) displacement_m: Vec<f64>,
     pub(crate) velocity_m_s: Vec<f64>,
     /// Where displacements begin, seen from the chain's own static equilibrium.
@@ -260,6 +266,7 @@ impl System {
             && !self.periodic
             && self.motion.is_none()
             && self.static_force_n.iter().all(|&force| force == 0.0)
+            && self.bridged.is_empty()
             && self.sections.iter().all(|section| section.ungated.is_empty())
     }
 }

@@ -25,6 +25,10 @@ impl System {
     pub fn from_state(&self, state: &State) -> Result<Self, ChainError> {
         self.check_state(state)?;
         let mut shot = self.clone();
+        for (contact, bridged) in shot.bridged.iter_mut().enumerate() {
+            let touches = contact > 0 && state.overlap_m(self, contact) >= 0.0;
+            *bridged = touches || state.bridged.get(contact).is_some_and(|&bridged| bridged);
+        }
         let spring = self.spring_at(state.displacement_m[1]);
         if state.rests() && spring.is_some() == self.spring.is_some() {
             shot.rest_in(state, spring);

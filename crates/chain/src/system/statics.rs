@@ -36,9 +36,13 @@ fn stiffness(system: &System, contact: usize, overlap: f64) -> f64 {
     rise / (2.0 * step)
 }
 
-/// Force at rest of one contact in N: what all its terms give at zero rate.
+/// Force at rest of one contact in N: what all its terms give at zero rate, and its bridge.
 pub(super) fn elastic_force(system: &System, contact: usize, overlap: f64) -> f64 {
-    system.unclipped_force(contact, Closed::new(overlap.max(0.0), 0.0))
+    let force = system.unclipped_force(contact, Closed::new(overlap.max(0.0), 0.0));
+    match system.bridged.is_empty() {
+        true => force,
+        false => force + system.pull_at_rest_n(contact, overlap),
+    }
 }
 
 /// A factor of 16 within which a rising function passes a level, looked for
@@ -76,10 +80,10 @@ pub(super) fn static_overlap(
     contact: usize,
     load_n: f64,
 ) -> Result<f64, ChainError> {
-    if load_n == 0.0 {
+    let force = |overlap| elastic_force(system, contact, overlap);
+    if load_n == 0.0 && (system.bridged.is_empty() || force(0.0) >= 0.0) {
         return Ok(0.0);
     }
-    let force = |overlap| elastic_force(system, contact, overlap);
     invert(force, load_n, 0.0).ok_or_else(|| {
         ChainError::Equilibrium(format!(
             "contact {contact} must carry {load_n} N, but none of its laws is elastic"

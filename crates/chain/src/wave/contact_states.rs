@@ -28,11 +28,12 @@ impl ContactStates {
         let mut contacts = Vec::new();
         for section in system.sections.iter().filter(|_| system.has_states) {
             let with_state = |term: &&TermColumns| term.law.info().nature == Nature::WithState;
-            let Some(term) = section.gated.iter().find(with_state) else { continue };
+            let Some(term) = section.terms().find(with_state) else { continue };
             for contact in section.contacts.clone().filter(|&c| system.has_contact(c)) {
                 let at = contact - section.contacts.start;
                 let Some(mut state) = term.law.state(&term.columns, at) else { continue };
-                state.begin(overlap_m(contact).max(0.0));
+                let least = if state.acts_across() { f64::NEG_INFINITY } else { 0.0 };
+                state.begin(overlap_m(contact).max(least));
                 let (start_m, stage_m) = ([0.0; 3], [0.0; 3]);
                 contacts.push(StatefulContact { contact, start_m, stage_m, state });
             }
@@ -65,9 +66,9 @@ impl ContactStates {
         force_n[contacts.clone()].fill(0.0);
         for (own, rate) in self.contacts.iter().zip(&mut self.rates_m_s[stage]) {
             let c = own.contact;
-            if contacts.contains(&c) && touching[c] > 0.0 {
+            if contacts.contains(&c) && (touching[c] > 0.0 || own.state.acts_across()) {
                 let overlap = system.offset_m[c] - (x[c + 1] - x[c]);
-                let closed = closed((overlap, v[c] - v[c + 1]));
+                let closed = closed(&*own.state, (overlap, v[c] - v[c + 1]));
                 let (force, own_rate) = own.state.force_and_rates(own.stage_m, closed);
                 force_n[c] += force;
                 *rate = own_rate;
@@ -99,7 +100,8 @@ impl ContactStates {
     ) -> bool {
         let mut any = false;
         for own in self.contacts.iter_mut().filter(|own| moving.contains(&own.contact)) {
-            let (numbers, changed) = own.state.accept(own.stage_m, closed(at(own.contact)));
+            let seen = closed(&*own.state, at(own.contact));
+            let (numbers, changed) = own.state.accept(own.stage_m, seen);
             (own.start_m, own.stage_m) = (numbers, numbers);
             any |= changed;
         }
@@ -110,25 +112,32 @@ impl ContactStates {
 
     /// A contact has opened: what comes next begins anew.
     pub(super) fn open(&mut self, contact: usize) {
-        if let Some(at) = self.find(contact) {
+        if let Some(at) = self.find(contact).filter(|at| !self.contacts[*at].state.acts_across()) {
             let own = &mut self.contacts[at];
             (own.start_m, own.stage_m) = ([0.0; 3], [0.0; 3]);
             own.state.begin(0.0);
         }
     }
 
-    /// What `of` says of a contact's state and its numbers, moved by these weights of the
-    /// stages since the start of the step.
+    /// Whether a contact has a state that goes on where it is open.
+    pub(super) fn acts_across(&self, contact: usize) -> bool {
+        self.find(contact).is_some_and(|at| self.contacts[at].state.acts_across())
+    }
+
+    /// What `of` says of a contact's state at an overlap in m and a rate in m/s and its numbers, moved
+    /// by these weights of the stages since the start of the step.
     pub(super) fn seen(
         &self,
         contact: usize,
         (step_s, weights): (f64, impl Iterator<Item = f64>),
-        of: impl Fn(&dyn ContactState, [f64; 3]) -> f64,
+        at_m_and_m_s: (f64, f64),
+        of: impl Fn(&dyn ContactState, [f64; 3], Closed) -> f64,
     ) -> Option<f64> {
         let at = self.find(contact)?;
         let own = &self.contacts[at];
         let moved = moved(step_s, weights, &self.rates_m_s, at);
-        Some(of(&*own.state, std::array::from_fn(|j| own.start_m[j] + moved[j])))
+        let numbers = std::array::from_fn(|j| own.start_m[j] + moved[j]);
+        Some(of(&*own.state, numbers, closed(&*own.state, at_m_and_m_s)))
     }
 
     fn find(&self, contact: usize) -> Option<usize> {
@@ -156,7 +165,11 @@ fn moved(
     sum.map(|sum| step_s * sum)
 }
 
-/// A contact as states see it.
-fn closed((overlap_m, rate_m_s): (f64, f64)) -> Closed {
-    Closed::new(if overlap_m > FLUSH { overlap_m } else { 0.0 }, rate_m_s)
+/// A contact as its state sees it.
+fn closed(state: &dyn ContactState, (overlap_m, rate_m_s): (f64, f64)) -> Closed {
+    let closed = Closed::new(if overlap_m > FLUSH { overlap_m } else { 0.0 }, rate_m_s);
+    match state.acts_across() && overlap_m < 0.0 {
+        true => Closed { overlap: overlap_m, ..closed },
+        false => closed,
+    }
 }

@@ -235,16 +235,21 @@ impl Piece<'_> {
 
     /// Force before any cut of a contact taken as closed, in N.
     pub(super) fn closed_force(&self, contact: usize, theta: f64) -> f64 {
-        self.uncut_force(contact, theta, self.closed(contact, self.overlap(contact, theta)))
+        self.uncut_force(contact, theta, self.overlap(contact, theta))
     }
 
-    fn uncut_force(&self, contact: usize, theta: f64, closed: Closed) -> f64 {
-        let of_laws = self.system.unclipped_force(contact, closed);
+    fn uncut_force(&self, contact: usize, theta: f64, at: (f64, f64)) -> f64 {
+        let of_laws = self.system.unclipped_force(contact, self.closed(contact, at));
         if self.state.states.is_empty() {
             return of_laws;
         }
-        let force = |state: &dyn ContactState, own| state.force_and_rates(own, closed).0;
-        of_laws + self.of_state(contact, theta, force).unwrap_or(0.0)
+        of_laws + self.state_force(contact, theta, at)
+    }
+
+    /// Force in N of a contact's state, if it has one, at an overlap in m and a rate in m/s.
+    fn state_force(&self, contact: usize, theta: f64, at: (f64, f64)) -> f64 {
+        let force = |state: &dyn ContactState, own, closed| state.force_and_rates(own, closed).0;
+        self.of_state(contact, theta, at, force).unwrap_or(0.0)
     }
 
     /// What `of` says of a contact's state and its numbers.
@@ -252,16 +257,18 @@ impl Piece<'_> {
         &self,
         contact: usize,
         theta: f64,
-        of: impl Fn(&dyn ContactState, [f64; 3]) -> f64,
+        at: (f64, f64),
+        of: impl Fn(&dyn ContactState, [f64; 3], Closed) -> f64,
     ) -> Option<f64> {
         let weights = self.table.dense_velocity.iter().map(|row| polynomial(row, theta));
-        self.state.states.seen(contact, (self.step_s, weights), of)
+        self.state.states.seen(contact, (self.step_s, weights), at, of)
     }
 
-    /// Below 0 where the state of a closed contact has changed its behaviour since the step's start.
+    /// Below 0 where the state of a contact has changed its behaviour since the step's start.
     pub(super) fn until_change(&self, contact: usize, theta: f64) -> Option<f64> {
-        let closed = self.closed(contact, self.overlap(contact, theta));
-        self.of_state(contact, theta, |state, own| state.until_change(own[0], closed))
+        let until =
+            |state: &dyn ContactState, own: [f64; 3], closed| state.until_change(own[0], closed);
+        self.of_state(contact, theta, self.overlap(contact, theta), until)
     }
 
     fn closed(&self, contact: usize, (overlap, rate): (f64, f64)) -> Closed {
@@ -280,14 +287,22 @@ impl Piece<'_> {
             false => ContactMode::Open,
         };
         let force = match mode {
-            ContactMode::Closed => self.uncut_force(contact, theta, closed),
+            ContactMode::Closed => self.uncut_force(contact, theta, (overlap, rate)),
+            ContactMode::Open if self.state.states.acts_across(contact) => {
+                let of_laws = self.system.ungated_force(contact, closed);
+                of_laws + self.state_force(contact, theta, (overlap, rate))
+            }
             ContactMode::Open => self.system.ungated_force(contact, closed),
             ContactMode::Cut => 0.0,
         };
         let smooth = frozen && mode == ContactMode::Closed;
-        match self.system.tension {
+        let force = match self.system.tension {
             Tension::Clipped if !smooth => force.max(0.0),
             _ => force,
+        };
+        match self.state.is_bridged(contact) {
+            true => force + self.system.pull_n(contact, overlap),
+            false => force,
         }
     }
 
@@ -337,15 +352,24 @@ impl Piece<'_> {
     fn seen_force(&self, contact: usize, theta: f64) -> f64 {
         let force = self.force(contact, theta);
         match self.system.tension {
-            Tension::Clipped => force.max(-self.system.static_force_n[contact]),
+            Tension::Clipped => force.max(self.least_force(contact, theta)),
             Tension::Allowed => force,
         }
     }
 
+    /// Dynamic force in N of a contact whose laws are cut.
+    fn least_force(&self, contact: usize, theta: f64) -> f64 {
+        let pull = match self.state.is_bridged(contact) {
+            true => self.system.pull_n(contact, self.overlap(contact, theta).0),
+            false => 0.0,
+        };
+        pull - self.system.static_force_n[contact]
+    }
+
     fn seen_force_rate(&self, contact: usize, theta: f64) -> f64 {
-        let least = -self.system.static_force_n[contact];
+        let least = || self.least_force(contact, theta);
         match self.system.tension {
-            Tension::Clipped if self.force(contact, theta) < least => 0.0,
+            Tension::Clipped if self.force(contact, theta) < least() => 0.0,
             _ => self.force_rate(contact, theta),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::state::{ContactMode, WaveState};
 use crate::laws::Nature;
-use crate::system::System;
+use crate::system::{System, TermColumns};
 
 /// What one law has dissipated.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,9 +65,26 @@ impl Budget {
     }
 }
 
+/// Energy of liquid bridges, if they are of the law asked for.
+fn stored_in_bridges(system: &System, state: &WaveState, law: Option<&str>) -> f64 {
+    let mut sum = 0.0;
+    for section in system.sections.iter() {
+        let asked = |bridge: &TermColumns| law.is_none_or(|law| law == bridge.law.info().name);
+        if section.bridge.as_ref().is_some_and(asked) {
+            let bridged = section.contacts.clone().filter(|&c| state.is_bridged(c));
+            sum +=
+                bridged.map(|c| system.bridge_energy_j(c, state.overlap(system, c))).sum::<f64>();
+        }
+    }
+    sum
+}
+
 /// Energy that contacts hold, of one law or of all.
 pub(super) fn stored(system: &System, state: &WaveState, law: Option<&str>) -> f64 {
-    let mut sum = 0.0;
+    let mut sum = match state.bridged.is_empty() {
+        true => 0.0,
+        false => stored_in_bridges(system, state, law),
+    };
     for section in system.sections.iter() {
         for term in section.terms() {
             let info = term.law.info();
@@ -76,11 +93,12 @@ pub(super) fn stored(system: &System, state: &WaveState, law: Option<&str>) -> f
             }
             for c in section.contacts.clone() {
                 let overlap = state.overlap(system, c);
-                if overlap > 0.0 && state.mode[c] != ContactMode::Open {
-                    if info.nature == Nature::WithState {
+                let closed = overlap > 0.0 && state.mode[c] != ContactMode::Open;
+                if info.nature == Nature::WithState {
+                    if closed || state.states.acts_across(c) {
                         sum += state.states.energy_j(c, overlap);
-                        continue;
                     }
+                } else if closed {
                     let largest = state.largest[c].max(overlap);
                     sum += term.law.energy(
                         &term.columns,
@@ -96,10 +114,12 @@ pub(super) fn stored(system: &System, state: &WaveState, law: Option<&str>) -> f
 }
 
 pub(super) fn rest_energy(system: &System) -> f64 {
-    (0..system.contacts())
+    let in_laws: f64 = (0..system.contacts())
         .filter(|&c| system.offset_m[c] > 0.0)
         .map(|c| system.stored_energy(c, system.offset_m[c]))
-        .sum()
+        .sum();
+    let bridged = system.bridged.iter().enumerate().filter(|(_, bridged)| **bridged);
+    in_laws + bridged.map(|(c, _)| system.bridge_energy_j(c, system.offset_m[c])).sum::<f64>()
 }
 
 pub(super) fn kinetic(system: &System, state: &WaveState) -> f64 {

@@ -39,6 +39,8 @@ pub(crate) struct Pass {
     pub scratch: Vec<f64>,
     /// Forces of contacts' states; empty where no law has any.
     pub of_states: Vec<f64>,
+    /// Forces of liquid bridges, 0 or below; empty where no section has any.
+    pub pull: Vec<f64>,
     pub set: InstructionSet,
 }
 
@@ -58,6 +60,7 @@ impl Pass {
             touching: contacts(),
             scratch: contacts(),
             of_states: if system.has_states { contacts() } else { Vec::new() },
+            pull: vec![0.0; system.bridged.len()],
             set: InstructionSet::default(),
         }
     }
@@ -82,6 +85,7 @@ impl Pass {
                 self.set_gates(state, gates, contacts.clone());
                 self.add_terms(system, contacts.clone());
                 self.subtract_static(system, contacts.clone(), gates);
+                self.add_bridges(system, state, contacts.clone());
                 self.push_bodies(system, bodies.clone(), x, a);
             }
         ));
@@ -174,7 +178,12 @@ impl Pass {
         self.closed_force[contacts.clone()].fill(0.0);
         self.across[contacts.clone()].fill(0.0);
         if system.has_states {
-            self.closed_force[contacts.clone()].copy_from_slice(&self.of_states[contacts.clone()]);
+            for c in contacts.clone() {
+                match self.touching[c] > 0.0 {
+                    true => self.closed_force[c] = self.of_states[c],
+                    false => self.across[c] = self.of_states[c],
+                }
+            }
         }
         for section in system.sections.iter() {
             let part =
@@ -228,6 +237,17 @@ impl Pass {
                     dynamic[c] = force - rest[c];
                 }
             }
+        }
+    }
+
+    /// Adds what liquid bridges pull, which is never cut.
+    fn add_bridges(&mut self, system: &System, state: &WaveState, contacts: Range<usize>) {
+        if system.bridged.is_empty() {
+            return;
+        }
+        for c in contacts {
+            self.pull[c] = if state.bridged[c] { system.pull_n(c, self.gap[c]) } else { 0.0 };
+            self.dynamic[c + 1] += self.pull[c];
         }
     }
 

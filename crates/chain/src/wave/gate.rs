@@ -19,6 +19,8 @@ enum Change {
     Turn,
     /// Of a state's behaviour.
     State,
+    /// Of a liquid bridge that ruptures.
+    Rupture,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -82,7 +84,8 @@ impl GateWatch {
             onset: 1.0,
             overlap_alone: system.tension == Tension::Allowed
                 && !system.has_memory
-                && !system.has_states,
+                && !system.has_states
+                && system.bridged.is_empty(),
             last: vec![(-1.0, 0); system.contacts()],
         }
     }
@@ -99,7 +102,11 @@ impl GateWatch {
         let gap = pass.gap[c];
         let clipped = system.tension == Tension::Clipped;
         match state.mode[c] {
-            ContactMode::Open => (gap > 0.0).then_some(Change::Overlap(ContactMode::Closed)),
+            ContactMode::Open if gap > 0.0 => Some(Change::Overlap(ContactMode::Closed)),
+            ContactMode::Open => {
+                let torn = state.is_bridged(c) && system.is_beyond_bridge(c, gap);
+                torn.then_some(Change::Rupture)
+            }
             _ if gap < 0.0 => Some(Change::Overlap(ContactMode::Open)),
             ContactMode::Closed if clipped && pass.uncut(c) < 0.0 => {
                 Some(Change::Force(ContactMode::Cut))
@@ -116,12 +123,14 @@ impl GateWatch {
     /// Whether a change left unlocated could alter a velocity by more than
     /// the step's own error.
     fn matters(&self, system: &System, pass: &Pass, c: usize, step_s: f64, change: Change) -> bool {
-        if system.has_states {
+        if system.has_states || !system.bridged.is_empty() {
             return true;
         }
         let depth = match change {
             Change::Overlap(_) => pass.gap[c].abs(),
-            Change::Force(_) | Change::Turn | Change::State => pass.gap[c].max(0.0),
+            Change::Force(_) | Change::Turn | Change::State | Change::Rupture => {
+                pass.gap[c].max(0.0)
+            }
         };
         let closed =
             Closed { largest: pass.largest[c].max(depth), ..Closed::new(depth, pass.rate[c]) };
@@ -161,7 +170,7 @@ impl GateWatch {
         }
         let theta = locate(piece, contact, change);
         let at_start = theta < AT_START.max(LEAST_STEP * self.time_s / piece.step_s);
-        let only_located = matches!(change, Change::Turn | Change::State);
+        let only_located = matches!(change, Change::Turn | Change::State | Change::Rupture);
         let spent = only_located || self.changed_at(contact, state.time_s) >= 2;
         let stays = (at_start && spent) || theta > 1.0 - AT_END;
         (!stays).then_some(Event { contact, theta, at_start, change })
@@ -192,7 +201,11 @@ impl GateWatch {
 
     /// A change of a state's behaviour, unless the contact is almost at rest.
     fn change_of_state(&self, piece: &Piece<'_>, pass: &Pass, contact: usize) -> Option<Change> {
-        let closed = piece.state.mode[contact] == ContactMode::Closed;
+        let closed = match piece.state.mode[contact] {
+            ContactMode::Closed => true,
+            ContactMode::Open => piece.state.states.acts_across(contact),
+            ContactMode::Cut => false,
+        };
         let moves = piece.system.has_states && pass.rate[contact].abs() > 1e-9 * self.speed;
         let until = (closed && moves).then(|| piece.until_change(contact, 1.0))??;
         (until < -LEAST_CHANGE).then_some(Change::State)
@@ -240,12 +253,19 @@ impl GateWatch {
             let aimed = aimed.filter(|event| event.contact == contact && found.is_none());
             let landed = aimed.map(|event| event.change).filter(|&change| match change {
                 Change::Overlap(_) => self.has_landed(system, state, pass, contact, change),
-                Change::Force(_) => true,
+                Change::Force(_) | Change::Rupture => true,
                 Change::Turn | Change::State => false,
             });
-            if let Some(Change::Overlap(mode) | Change::Force(mode)) = found.or(landed) {
-                self.set(state, contact, mode);
-                changed = true;
+            match found.or(landed) {
+                Some(Change::Overlap(mode) | Change::Force(mode)) => {
+                    self.set(state, contact, mode);
+                    changed = true;
+                }
+                Some(Change::Rupture) => {
+                    state.bridged[contact] = false;
+                    changed = true;
+                }
+                Some(Change::Turn | Change::State) | None => {}
             }
         }
         changed
@@ -280,6 +300,7 @@ fn locate(piece: &Piece<'_>, contact: usize, change: Change) -> f64 {
             Change::Force(ContactMode::Closed) => piece.closed_force(contact, theta),
             Change::Force(_) => -piece.closed_force(contact, theta),
             Change::Turn => -rate,
+            Change::Rupture => -overlap - piece.system.rupture_m(contact),
             Change::State => -piece.until_change(contact, theta).unwrap_or(0.0),
         }
     };

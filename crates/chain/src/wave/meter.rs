@@ -35,7 +35,8 @@ impl Meter {
             let name = term.law.info().name;
             laws.iter().position(|&law| law == name)
         };
-        let of_section = |section: &SectionColumns| section.terms().map(slot).collect();
+        let of_section =
+            |section: &SectionColumns| section.terms().chain(&section.bridge).map(slot).collect();
         let mut meter = Self {
             slots: system.sections.iter().map(of_section).collect(),
             laws,
@@ -79,6 +80,9 @@ impl Meter {
                     if let Some(slot) = slot {
                         powers[*slot] += term_power(section, term, gated, pass, part.clone());
                     }
+                }
+                if let Some(slot) = slots.get(section.terms().count()).copied().flatten() {
+                    powers[slot] += pull_power(pass, part);
                 }
             }
         }
@@ -166,7 +170,7 @@ fn lossy(system: &System) -> impl Iterator<Item = &TermColumns> {
     system
         .sections
         .iter()
-        .flat_map(SectionColumns::terms)
+        .flat_map(|section| section.terms().chain(&section.bridge))
         .filter(|term| term.law.info().nature != Nature::Elastic)
 }
 
@@ -207,6 +211,12 @@ fn term_power(
     acting.zip(rate).map(|(f, rate)| f * rate).sum()
 }
 
+/// Σ F δ̇ of liquid bridges over consecutive contacts.
+fn pull_power(pass: &Pass, contacts: Range<usize>) -> f64 {
+    let pulls = pass.pull[contacts.clone()].iter().zip(&pass.rate[contacts]);
+    pulls.map(|(pull, rate)| pull * rate).sum()
+}
+
 fn cut_power(system: &System, pass: &Pass, contacts: Range<usize>) -> f64 {
     if system.tension == crate::chain::Tension::Allowed {
         return 0.0;
@@ -217,7 +227,8 @@ fn cut_power(system: &System, pass: &Pass, contacts: Range<usize>) -> f64 {
         .map(|c| {
             let acting = pass.dynamic[c + 1] + system.static_force_n[c];
             let gated = if pass.touching[c] > 0.0 { pass.closed_force[c] } else { 0.0 };
-            (acting - gated - pass.across[c]) * pass.rate[c]
+            let pull = pass.pull.get(c).copied().unwrap_or(0.0);
+            (acting - pull - gated - pass.across[c]) * pass.rate[c]
         })
         .sum()
 }

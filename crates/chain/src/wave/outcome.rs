@@ -44,6 +44,8 @@ pub struct Outcome {
     pub velocity_m_s: Vec<f64>,
     /// Displacements of all bodies in m.
     pub displacement_m: Vec<f64>,
+    /// Contacts that a liquid bridge joins, as in [`State`](crate::settle::State).
+    pub bridged: Vec<bool>,
     /// Energy terms at the end, when a budget was asked for.
     pub budget: Option<Budget>,
     /// The contact of the highest Hertz pressure and its largest force in N, with the one at rest, when a

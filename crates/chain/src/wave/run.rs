@@ -400,6 +400,7 @@ impl<'a> Wave<'a> {
             hardest: self.hardest.and_then(|hardest| hardest.found()),
             velocity_m_s: self.state.v,
             displacement_m: self.state.x,
+            bridged: self.state.bridged,
             work: self.work,
         }
     }

@@ -27,6 +27,8 @@ pub(crate) struct WaveState {
     /// Largest overlap so far; followed only if a law remembers it.
     pub largest: Vec<f64>,
     pub states: ContactStates,
+    /// As in [`System`].
+    pub bridged: Vec<bool>,
 }
 
 impl WaveState {
@@ -43,6 +45,7 @@ impl WaveState {
             touching: vec![0.0; contacts],
             largest: vec![0.0; contacts],
             states: ContactStates::default(),
+            bridged: system.bridged.clone(),
         };
         state.states = ContactStates::new(system, stages, |c| state.overlap(system, c));
         for contact in 0..contacts {
@@ -61,6 +64,15 @@ impl WaveState {
         system.offset_m[contact] - (self.x[contact + 1] - self.x[contact])
     }
 
+    pub(super) fn is_bridged(&self, contact: usize) -> bool {
+        self.bridged.get(contact).is_some_and(|&bridged| bridged)
+    }
+
+    /// Whether a contact has parted farther than its bridge bears.
+    pub(super) fn is_torn(&self, system: &System, contact: usize) -> bool {
+        self.is_bridged(contact) && system.is_beyond_bridge(contact, self.overlap(system, contact))
+    }
+
     /// Closes a contact where it overlaps, else opens it.
     pub(super) fn follow(&mut self, system: &System, contact: usize) {
         let mode = match self.overlap(system, contact) >= 0.0 {
@@ -70,6 +82,9 @@ impl WaveState {
         if self.mode[contact] != mode {
             self.set(contact, mode);
         }
+        if self.is_torn(system, contact) {
+            self.bridged[contact] = false;
+        }
     }
 
     pub(super) fn set(&mut self, contact: usize, mode: ContactMode) {
@@ -78,6 +93,8 @@ impl WaveState {
         self.touching[contact] = f64::from(u8::from(mode != ContactMode::Open));
         if mode == ContactMode::Open {
             self.states.open(contact);
+        } else if let Some(bridged) = self.bridged.get_mut(contact) {
+            *bridged = true;
         }
     }
 }

@@ -35,11 +35,15 @@ fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
     if let Some(material) = path.strip_suffix("bulk_viscosity") {
         return experiment.get(&format!("{material}shear_viscosity")).ok();
     }
-    if let Some((_, parameter)) = path.split_once(".film_entrained.") {
+    let wet = [".film_entrained.", ".film_drained.", ".capillary_bridge."];
+    let parameter = wet.into_iter().find_map(|law| Some(path.split_once(law)?.1));
+    if let Some(parameter) = parameter {
         let liquid = experiment.liquid()?;
         return match parameter {
             "viscosity" => liquid.dynamic_viscosity_pa_s(),
             "pressure_viscosity" => liquid.pressure_viscosity_per_pa,
+            "surface_tension" => liquid.surface_tension_n_m,
+            "volume" => liquid.volume_m3,
             _ => None,
         };
     }

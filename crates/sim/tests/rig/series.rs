@@ -228,3 +228,26 @@ fn separate_channels_add_up_to_the_summed_one() {
         assert!(peak(sensor) < peak(wall));
     }
 }
+
+/// A row that no spring pushes: taps leave gaps, which liquid closes where friction holds the weight alone.
+#[test]
+fn bridges_close_most_gaps_of_a_steep_smooth_row_without_springs() {
+    let bridge = "\"damping_viscoelastic\", { law = \"capillary_bridge\", surface_tension = \"30 mN/m\", \
+                  volume = \"0.1 µl\" }]";
+    let loose =
+        ("[near_end]\npush = \"spring\"\nforce = \"0.24 N\"\nstiffness = \"100 N/m\"\n", "");
+    let open = |wet: &str, friction: &str| {
+        let steep = ("incline = \"0.2 deg\"", "incline = \"0.5 deg\"");
+        let friction = ("friction = 0.05", friction);
+        let changes = [loose, steep, friction, ("\"damping_viscoelastic\"]", wet)];
+        let all = shots(&plan(&changes), SLOW_WET);
+        let gaps = all.iter().flat_map(|fired| &fired.shot.gaps_before_m);
+        gaps.filter(|&&gap_m| gap_m > 0.0).count()
+    };
+    let dry = "\"damping_viscoelastic\"]";
+    // Friction of 4.2 and 0.84 mN, of which the weight takes 0.73; pull of 1.2 mN.
+    let [held, drawn] = [open(bridge, "friction = 0.05"), open(bridge, "friction = 0.01")];
+    let without = open(dry, "friction = 0.01");
+    // Of 36, twelve contacts before three shots: 8, 36 and 36.
+    assert!(drawn < 15 && held > 30 && without > 30, "{drawn} {held} {without}");
+}

@@ -44,6 +44,7 @@ fn default(parameter: &Parameter) -> String {
         Source::Materials => "default: from the materials".to_owned(),
         Source::Hertz => "default: the section's elastic_hertz, else the materials".to_owned(),
         Source::Liquid => "default: of [liquid]".to_owned(),
+        Source::Default(f64::INFINITY) => "default: of [liquid], else without limit".to_owned(),
         Source::Default(value) => format!("default: {value}"),
     }
 }
