@@ -108,6 +108,12 @@ const MOST: usize = 2;
 /// Share of the width within which two maxima are noise, or digitiser steps, on one top, unless the
 /// signal falls by a share of the lower one between them.
 const APART: f64 = 0.5;
+/// Share of the fall that makes a pulse of a maximum which is enough of a valley between fragments: they
+/// are as high as each other, and noise fills it.
+const VALLEY_DEPTH: f64 = 0.5;
+/// Widths of the first pulse from the largest within which such fragments are: farther off, noise has as
+/// high ones.
+const FRAGMENTS: f64 = 3.0;
 /// Half widths of the rise before a maximum where its pulse has hardly begun.
 const BEGUN: f64 = 2.6;
 /// Standard errors of a difference in height beyond which it is no chance: 0.13 %.
@@ -123,9 +129,18 @@ pub(super) fn other_maxima(
     let under = smoothed.height(chosen.at.saturating_sub((BEGUN * rise) as usize)).max(0.0);
     let least = chosen.height - CLOSE * smoothed.noise - under;
     let apart = (APART * (rise + fall)) as usize;
-    let near =
-        |m: &&SmoothedMaximum| (m.at as f64) > from && (m.at as f64) < to && m.height > least;
-    let mut near: Vec<SmoothedMaximum> = smoothed.maxima.iter().filter(near).copied().collect();
+    let fall = VALLEY_DEPTH * smoothed.least_fall;
+    let reach = FRAGMENTS * smoothed.channel.width;
+    // A fragment beside another may stand out of a straight line too little to be a pulse alone.
+    let may_be_pulse = |m: &SmoothedMaximum| {
+        let is_fragment = m.height > chosen.height || (m.at.abs_diff(chosen.at) as f64) < reach;
+        is_fragment || smoothed.maxima.iter().any(|own| own.at == m.at)
+    };
+    let mut near = smoothed.maxima(fall);
+    near.retain(|m| {
+        let at = m.at as f64;
+        at > from && at < to && m.height > least.max(fall) && may_be_pulse(m)
+    });
     near.sort_by(|a, b| b.height.total_cmp(&a.height));
     let mut tops = vec![*chosen];
     for maximum in near {
