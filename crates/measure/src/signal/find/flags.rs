@@ -1,6 +1,7 @@
 //! Clipped tops, digitiser steps, and competing maxima of the pulses found.
 
 use super::channel::{Smoothed, SmoothedMaximum, VALLEY, extremes};
+use super::select::NARROWEST;
 use super::{
     Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Pulse, PulseKind, QualityFlag,
 };
@@ -131,10 +132,16 @@ pub(super) fn other_maxima(
     let apart = (APART * (rise + fall)) as usize;
     let fall = VALLEY_DEPTH * smoothed.least_fall;
     let reach = FRAGMENTS * smoothed.channel.width;
-    // A fragment beside another may stand out of a straight line too little to be a pulse alone.
+    // A fragment beside another may stand out of a straight line too little to be a pulse alone; a narrow
+    // one is noise, of whose top a fit may make any height.
+    let may_be_fragment = |m: &SmoothedMaximum| {
+        let (rise, fall) = smoothed.sides(m);
+        let is_wide = rise + fall > NARROWEST * smoothed.channel.width;
+        is_wide && (m.height > chosen.height || (m.at.abs_diff(chosen.at) as f64) < reach)
+    };
     let may_be_pulse = |m: &SmoothedMaximum| {
-        let is_fragment = m.height > chosen.height || (m.at.abs_diff(chosen.at) as f64) < reach;
-        is_fragment || smoothed.maxima.iter().any(|own| own.at == m.at)
+        let is_own = smoothed.maxima.iter().any(|own| own.at == m.at);
+        is_own || may_be_fragment(m) || smoothed.is_significant(m)
     };
     let mut near = smoothed.maxima(fall);
     near.retain(|m| {
