@@ -120,11 +120,13 @@ const BEGUN: f64 = 2.6;
 /// Standard errors of a difference in height beyond which it is no chance: 0.13 %.
 const SIGNIFICANT: f64 = 3.0;
 
-/// The highest others of a pulse's maxima, of those that noise could have made the lower.
+/// The highest others of a pulse's maxima, of those that noise could have made the lower. A reflected
+/// pulse, which is low, may have fragments without a valley that noise leaves.
 pub(super) fn other_maxima(
     smoothed: &Smoothed<'_>,
     (from, to): (f64, f64),
     chosen: &SmoothedMaximum,
+    kind: PulseKind,
 ) -> Vec<SmoothedMaximum> {
     let (rise, fall) = smoothed.sides(chosen);
     let under = smoothed.height(chosen.at.saturating_sub((BEGUN * rise) as usize)).max(0.0);
@@ -141,7 +143,8 @@ pub(super) fn other_maxima(
     };
     let may_be_pulse = |m: &SmoothedMaximum| {
         let is_own = smoothed.maxima.iter().any(|own| own.at == m.at);
-        is_own || may_be_fragment(m) || smoothed.is_significant(m)
+        let is_low = kind == PulseKind::Reflected;
+        is_own || is_low && (may_be_fragment(m) || smoothed.is_significant(m))
     };
     let mut near = smoothed.maxima(fall);
     near.retain(|m| {
