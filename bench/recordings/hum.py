@@ -1,9 +1,9 @@
 """Errors made over errors stated, for shots with hum, ramps and steps under them.
 
-usage: python hum.py PROGRAM [LEAD]      (needs numpy)
+usage: python hum.py PROGRAM [LEAD [OPTION …]]      (needs numpy)
 
 LEAD is a time in ms before and after each shot, 0 when absent; with it there are rows of higher
-harmonics and of a supply's ripple of 1 to 3 kHz. Thirty shots of three bells at 1 MS/s for each disturbance and noise, with random phases, slopes and
+harmonics and of a supply's ripple of 1 to 3 kHz. OPTIONs are of `measure`. Thirty shots of three bells at 1 MS/s for each disturbance and noise, with random phases, slopes and
 places. Prints a table in Markdown: of incident and of reflected times the root mean square of made
 over stated, and the median of what is stated, in µs.
 """
@@ -100,7 +100,7 @@ def main():
             with tempfile.TemporaryDirectory() as folder:
                 path = pathlib.Path(folder) / "shots.npy"
                 np.save(path, np.array(volts))
-                words = [program, "measure", path, "--rate", "1MHz", "--json", "--whole"]
+                words = [program, "measure", path, "--rate", "1MHz", "--json", "--whole", *sys.argv[3:]]
                 shots = json.loads(subprocess.run(words, capture_output=True).stdout)["shots"]
             incident = cells(shots, "tof_incident_s", INCIDENT)
             reflected = cells(shots, "tof_reflected_s", REFLECTED)

@@ -312,6 +312,7 @@ fn measuring(
         high_pass_s: high_pass_hz.filter(|hz| *hz > 0.0).map(|hz| (TAU * hz).recip()),
         low_pass: picking.smooth.map(|cutoff| LowPass { cutoff_hz: cutoff.0, order: ORDER }),
         bandwidth: bandwidth(picking, rig)?,
+        mains_hz: picking.mains.map(|mains| mains.0),
         calibration: SensorCalibration {
             sensitivities_v_n: picking
                 .sensitivity

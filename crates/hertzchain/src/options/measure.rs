@@ -167,6 +167,9 @@ pub struct PickOptions {
     /// Corner of the AC coupling (high-pass) that the signal went through, such as 0.5Hz: its droop is corrected; 0 leaves it, also where a recording states a corner
     #[arg(long, value_name = "RATE")]
     pub ac_coupling: Option<Corner>,
+    /// Frequency of the mains, such as 50Hz: hum in the record before a shot is held at its multiples
+    #[arg(long, value_name = "FREQUENCY")]
+    pub mains: Option<Frequency>,
     /// Sensitivity of the sensor bead's sensor, such as 12mV/N: heights are also stated in N
     #[arg(long, value_name = "V/N")]
     pub sensitivity: Option<Sensitivity>,

@@ -14,6 +14,10 @@ use crate::signal::{
     without_spikes,
 };
 
+/// Railways have 16.7 Hz, aircraft 400 Hz.
+const LEAST_MAINS_HZ: f64 = 10.0;
+const MOST_MAINS_HZ: f64 = 1000.0;
+
 /// Conditioning of a shot's samples, and how its pulses are found and picked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalOptions {
@@ -27,6 +31,8 @@ pub struct SignalOptions {
     pub low_pass: Option<LowPass>,
     /// The amplifier's low-pass, if its effects on maxima are to be corrected.
     pub bandwidth: Option<Bandwidth>,
+    /// Frequency of the mains in Hz, at multiples of which sines before a shot are held.
+    pub mains_hz: Option<f64>,
     /// What is known of the sensors.
     pub calibration: SensorCalibration,
 }
@@ -82,6 +88,10 @@ pub fn measure(
 ) -> Result<Measured> {
     MeasureError::positive("sampling interval in s", interval_s)?;
     options.calibration.check(channels)?;
+    if let Some(hz) = options.mains_hz {
+        let accepted = (LEAST_MAINS_HZ..=MOST_MAINS_HZ).contains(&hz);
+        MeasureError::require(accepted, "mains frequency in Hz", hz, "a number from 10 to 1000")?;
+    }
     let find = &options.find;
     let polarities = [find.polarity, find.wall_polarity];
     let raw = channels.both();
@@ -96,7 +106,7 @@ pub fn measure(
     let recorded: Vec<&[f64]> = repaired.iter().map(|(samples, _)| &samples[..]).collect();
     let recorded = channels_of(&recorded);
     let (found, calm) = without_hum(&conditioned, interval_s, (recorded, find))?;
-    let tones = subtract_tones(&found, &mut conditioned, interval_s);
+    let tones = subtract_tones(&found, &mut conditioned, interval_s, options.mains_hz);
     let (mut found, calm) = match tones.iter().any(Option::is_some) {
         true => without_hum(&conditioned, interval_s, (recorded, find))?,
         false => (found, calm),
@@ -170,11 +180,12 @@ fn subtract_tones(
     found: &Found,
     channels: &mut [Cow<'_, [f64]>],
     interval_s: f64,
+    mains_hz: Option<f64>,
 ) -> Vec<Option<Tones>> {
     let tones = |samples: &mut Cow<'_, [f64]>| {
         let first = found.incident.filter(|_| found.wall.is_some())?;
         let end = first.at.checked_sub((MARGIN * first.width_samples) as usize)?;
-        let tones = Tones::new(&samples[..end], first.height, interval_s)?;
+        let tones = Tones::new(&samples[..end], first.height, interval_s, mains_hz)?;
         *samples = tones.subtracted(samples).into();
         Some(tones)
     };

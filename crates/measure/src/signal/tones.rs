@@ -39,8 +39,13 @@ pub(super) struct Tones {
 
 impl Tones {
     /// The significant sines in the samples before a pulse, if any is at least the [`LEAST`] share of
-    /// its height.
-    pub(super) fn new(before: &[f64], height: f64, interval_s: f64) -> Option<Self> {
+    /// its height; multiples of the mains' frequency, if it is known and they leave less by fewer numbers.
+    pub(super) fn new(
+        before: &[f64],
+        height: f64,
+        interval_s: f64,
+        mains_hz: Option<f64>,
+    ) -> Option<Self> {
         let length = ((MEAN_S / interval_s).round() as usize).max(1);
         let count = before.len().min((LONGEST_S / interval_s) as usize) / length;
         let lead = &before[before.len() - count * length..];
@@ -51,13 +56,18 @@ impl Tones {
         let means: Vec<f64> = lead.chunks_exact(length).map(mean).collect();
         let half = 0.5 * (count * length) as f64;
         let most_hz = HIGHEST_HZ.min(0.25 / (length as f64 * interval_s));
-        let fit = ToneFit::new(&means, most_hz * half * interval_s)?;
+        let cycles = |hz: f64| hz * half * interval_s;
+        let free = ToneFit::new(&means, cycles(most_hz), None);
+        let held = mains_hz.and_then(|hz| ToneFit::new(&means, cycles(most_hz), Some(cycles(hz))));
+        let either = free.into_iter().chain(held);
+        let fit = either.min_by(|a, b| a.criterion.total_cmp(&b.criterion))?;
         let gain = |tone: &Tone| {
             let angle = PI * tone.cycles / half;
             (length as f64 * angle).sin() / (length as f64 * angle.sin())
         };
         let gains = fit.tones.iter().map(gain).collect();
-        let largest = fit.tones.iter().map(|tone| tone.cosine.hypot(tone.sine)).fold(0.0, f64::max);
+        let subtracted = fit.tones.iter().filter(|tone| tone.cycles >= SLOWEST);
+        let largest = subtracted.map(|tone| tone.cosine.hypot(tone.sine)).fold(0.0, f64::max);
         let centre = before.len() as f64 - half - 0.5;
         (largest > LEAST * height).then_some(Self { fit, centre, half, gains })
     }
@@ -67,7 +77,10 @@ impl Tones {
         let value = |at: usize| {
             let u = (at as f64 - self.centre) / self.half;
             let tones = self.fit.tones.iter().zip(&self.gains);
-            tones.map(|(tone, gain)| tone.at(u)[0] / gain).sum::<f64>()
+            tones
+                .filter(|(tone, _)| tone.cycles >= SLOWEST)
+                .map(|(tone, gain)| tone.at(u)[0] / gain)
+                .sum::<f64>()
         };
         samples.iter().enumerate().map(|(at, sample)| sample - value(at)).collect()
     }
@@ -95,42 +108,56 @@ impl Tone {
     }
 }
 
-/// Sines and a cubic fitted to means.
+/// Sines and a cubic fitted to means. A sine that is too slow, and is held, is only fitted: it is left to
+/// the slow baseline.
 struct ToneFit {
     tones: Vec<Tone>,
     solution: LinearSolution<UNKNOWNS>,
     noise: f64,
+    /// Schwarz's, which weighs squares against parameters.
+    criterion: f64,
 }
 
 impl ToneFit {
-    /// The strongest sines, one after the other, of at most so many cycles of half the stretch. `None`
-    /// if there is none, if one is too slow, or if more is left than noise: what is no sum of sines, such
-    /// as a step, takes many.
-    fn new(means: &[f64], most_cycles: f64) -> Option<Self> {
-        let (mut found, mut left) = (None, less_sines(means, &mut [])?);
-        let mut tones: Vec<Tone> = Vec::new();
-        while let Some(cycles) = peak(&left, most_cycles) {
-            tones.push(Tone { cycles, cosine: 0.0, sine: 0.0 });
+    /// The strongest sines, one after the other, of at most so many cycles of half the stretch; held at
+    /// multiples of a frequency, if one is given. `None` if there is none, if one is too slow and free, or
+    /// if more is left than noise: what is no sum of sines, such as a step, takes many.
+    fn new(means: &[f64], most_cycles: f64, held: Option<f64>) -> Option<Self> {
+        // What a cubic leaves of a slow sine is spread over all the others.
+        let slow = held.filter(|cycles| *cycles < SLOWEST);
+        let tone = |cycles: f64| Tone { cycles, cosine: 0.0, sine: 0.0 };
+        let mut tones: Vec<Tone> = slow.into_iter().map(tone).collect();
+        let (mut found, mut left) = (None, less_sines(means, &mut tones)?);
+        let step = held.unwrap_or(APART);
+        while let Some(cycles) = peak(&left, most_cycles, step) {
+            tones.push(tone(cycles));
             let apart = |a: &Tone, b: &Tone| (a.cycles - b.cycles).abs() >= CLOSEST;
-            let (solution, residuals) = refined(means, &mut tones).filter(|_| {
-                let mut pairs = tones.iter().enumerate();
-                pairs.all(|(i, a)| tones[..i].iter().all(|b| apart(a, b)))
-            })?;
+            let (solution, residuals) =
+                refined(means, &mut tones, held.is_some()).filter(|_| {
+                    let mut pairs = tones.iter().enumerate();
+                    held.is_some() || pairs.all(|(i, a)| tones[..i].iter().all(|b| apart(a, b)))
+                })?;
             (found, left) = (Some(solution), residuals);
-            if tones.len() == MOST && peak(&left, most_cycles).is_some() {
+            if tones.len() == MOST && peak(&left, most_cycles, step).is_some() {
                 return None;
             }
         }
-        let freedom = means.len() as f64 - (SLOW + 3 * tones.len()) as f64;
-        let noise = (left.iter().map(|off| off * off).sum::<f64>() / freedom).sqrt();
-        let is_slow = tones.iter().any(|tone| tone.cycles < SLOWEST);
-        Some(Self { tones, solution: found.filter(|_| !is_slow)?, noise })
+        let count = means.len() as f64;
+        let numbers = (SLOW + numbers_each(held.is_some()) * tones.len()) as f64;
+        let squares = left.iter().map(|off| off * off).sum::<f64>();
+        let is_slow = held.is_none() && tones.iter().any(|tone| tone.cycles < SLOWEST);
+        Some(Self {
+            tones,
+            solution: found.filter(|_| !is_slow)?,
+            noise: (squares / (count - numbers)).sqrt(),
+            criterion: count * squares.max(f64::MIN_POSITIVE).ln() + numbers * count.ln(),
+        })
     }
 
     /// Standard error of the slope of all sines at u.
     fn slope_error(&self, u: f64) -> f64 {
         let (mut row, count) = ([0.0; UNKNOWNS], self.tones.len());
-        for (i, tone) in self.tones.iter().enumerate() {
+        for (i, tone) in self.tones.iter().enumerate().filter(|(_, tone)| tone.cycles >= SLOWEST) {
             let turn = 2.0 * PI * tone.cycles;
             let (sin, cos) = (turn * u).sin_cos();
             let [value, rate] = tone.at(u);
@@ -179,10 +206,20 @@ fn less_sines(means: &[f64], tones: &mut [Tone]) -> Option<Vec<f64>> {
     Some(means.iter().enumerate().map(|(i, mean)| mean - model(i)).collect())
 }
 
-/// The same with the cycles by Gauss and Newton's steps, and the solution of the last of them.
-fn refined(means: &[f64], tones: &mut [Tone]) -> Option<(LinearSolution<UNKNOWNS>, Vec<f64>)> {
-    let (size, first) = (SLOW + 3 * tones.len(), SLOW + 2 * tones.len());
-    for _ in 0..ROUNDS {
+/// Both parts of a sine, and its cycles if they are free.
+fn numbers_each(held: bool) -> usize {
+    if held { 2 } else { 3 }
+}
+
+/// The same with the cycles by Gauss and Newton's steps unless they are held, and the solution of the last
+/// of them.
+fn refined(
+    means: &[f64],
+    tones: &mut [Tone],
+    held: bool,
+) -> Option<(LinearSolution<UNKNOWNS>, Vec<f64>)> {
+    let (size, first) = (SLOW + numbers_each(held) * tones.len(), SLOW + 2 * tones.len());
+    for _ in 0..if held { 0 } else { ROUNDS } {
         let left = less_sines(means, tones)?;
         let steps = solved(&left, tones, size)?.values;
         for (tone, step) in tones.iter_mut().zip(&steps[first..size]) {
@@ -193,8 +230,8 @@ fn refined(means: &[f64], tones: &mut [Tone]) -> Option<(LinearSolution<UNKNOWNS
     Some((solved(&left, tones, size)?, left))
 }
 
-/// Cycles of half a stretch of the most powerful sine, if it is significant.
-fn peak(left: &[f64], most_cycles: f64) -> Option<f64> {
+/// Cycles of half a stretch of the most powerful sine at multiples of a step, if it is significant.
+fn peak(left: &[f64], most_cycles: f64, step: f64) -> Option<f64> {
     let power = |cycles: f64| {
         let (mut sums, mut angle) = ([0.0; 2], [1.0, 0.0]);
         let (sin, cos) = (4.0 * PI * cycles / left.len() as f64).sin_cos();
@@ -204,9 +241,9 @@ fn peak(left: &[f64], most_cycles: f64) -> Option<f64> {
         }
         sums[0] * sums[0] + sums[1] * sums[1]
     };
-    let count = (most_cycles / APART) as usize;
-    let powers: Vec<f64> = (1..=count).map(|i| power(i as f64 * APART)).collect();
+    let count = (most_cycles / step) as usize;
+    let powers: Vec<f64> = (1..=count).map(|i| power(i as f64 * step)).collect();
     let white = median(&powers)? / LN_2;
     let (at, most) = powers.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
-    (*most > SIGNIFICANT * white && *most > 0.0).then(|| (at + 1) as f64 * APART)
+    (*most > SIGNIFICANT * white && *most > 0.0).then(|| (at + 1) as f64 * step)
 }

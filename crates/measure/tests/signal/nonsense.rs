@@ -47,6 +47,7 @@ fn measure_all(samples: &[f64], wall: &[f64], interval_s: f64) {
                     high_pass_s: beads.map(|_| 1e-3),
                     low_pass: None,
                     bandwidth: None,
+                    mains_hz: beads.map(|_| 50.0),
                     calibration: crate::signal::SensorCalibration {
                         sensitivities_v_n: beads.map(|_| [1e-300, 1e300]),
                         skew_s: 0.0,

@@ -52,6 +52,7 @@ class MeasureOptions(TypedDict, total=False):
     low_pass: Quantity | None
     filter: Literal["first", "butterworth2", "butterworth3", "butterworth4", "bessel2", "bessel3", "bessel4"] | None
     ac_coupling: Quantity | None
+    mains: Quantity | None
     sensitivity: Quantity | None
     wall_sensitivity: Quantity | None
     skew: Quantity | None

@@ -183,7 +183,9 @@ pub(super) struct Smoothed<'a> {
     values: Vec<f64>,
     pub(super) noise: f64,
     length: usize,
-    /// Maxima that stand out of noise and of the highest pulse's hundredths.
+    /// Fall on both sides of a maximum by which it stands out of noise and of the highest pulse's hundredths.
+    pub(super) least_fall: f64,
+    /// Maxima that do.
     pub(super) maxima: Vec<SmoothedMaximum>,
 }
 
@@ -210,9 +212,11 @@ impl<'a> Smoothed<'a> {
             values: triangular_mean(&values, length),
             noise: baseline.noise.min(left),
             length,
+            least_fall: 0.0,
             maxima: Vec::new(),
         };
         let least = (5.0 * smoothed.noise).max(0.005 * height);
+        smoothed.least_fall = least;
         smoothed.maxima = smoothed.maxima(least);
         smoothed.maxima.retain(|m| m.height > least);
         smoothed
@@ -226,7 +230,7 @@ impl<'a> Smoothed<'a> {
     }
 
     /// Maxima from which the signal falls by `drop` on both sides, in order.
-    fn maxima(&self, drop: f64) -> Vec<SmoothedMaximum> {
+    pub(super) fn maxima(&self, drop: f64) -> Vec<SmoothedMaximum> {
         let mut maxima = Vec::new();
         let (mut top, mut valley, mut rising) = (0, f64::INFINITY, true);
         for (i, value) in self.values.iter().enumerate() {

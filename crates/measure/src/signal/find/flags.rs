@@ -1,6 +1,7 @@
 //! Clipped tops, digitiser steps, and competing maxima of the pulses found.
 
 use super::channel::{Smoothed, SmoothedMaximum, VALLEY, extremes};
+use super::select::NARROWEST;
 use super::{
     Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Pulse, PulseKind, QualityFlag,
 };
@@ -108,24 +109,48 @@ const MOST: usize = 2;
 /// Share of the width within which two maxima are noise, or digitiser steps, on one top, unless the
 /// signal falls by a share of the lower one between them.
 const APART: f64 = 0.5;
+/// Share of the fall that makes a pulse of a maximum which is enough of a valley between fragments: they
+/// are as high as each other, and noise fills it.
+const VALLEY_DEPTH: f64 = 0.5;
+/// Widths of the first pulse from the largest within which such fragments are: farther off, noise has as
+/// high ones.
+const FRAGMENTS: f64 = 3.0;
 /// Half widths of the rise before a maximum where its pulse has hardly begun.
 const BEGUN: f64 = 2.6;
 /// Standard errors of a difference in height beyond which it is no chance: 0.13 %.
 const SIGNIFICANT: f64 = 3.0;
 
-/// The highest others of a pulse's maxima, of those that noise could have made the lower.
+/// The highest others of a pulse's maxima, of those that noise could have made the lower. A reflected
+/// pulse, which is low, may have fragments without a valley that noise leaves.
 pub(super) fn other_maxima(
     smoothed: &Smoothed<'_>,
     (from, to): (f64, f64),
     chosen: &SmoothedMaximum,
+    kind: PulseKind,
 ) -> Vec<SmoothedMaximum> {
     let (rise, fall) = smoothed.sides(chosen);
     let under = smoothed.height(chosen.at.saturating_sub((BEGUN * rise) as usize)).max(0.0);
     let least = chosen.height - CLOSE * smoothed.noise - under;
     let apart = (APART * (rise + fall)) as usize;
-    let near =
-        |m: &&SmoothedMaximum| (m.at as f64) > from && (m.at as f64) < to && m.height > least;
-    let mut near: Vec<SmoothedMaximum> = smoothed.maxima.iter().filter(near).copied().collect();
+    let fall = VALLEY_DEPTH * smoothed.least_fall;
+    let reach = FRAGMENTS * smoothed.channel.width;
+    // A fragment beside another may stand out of a straight line too little to be a pulse alone; a narrow
+    // one is noise, of whose top a fit may make any height.
+    let may_be_fragment = |m: &SmoothedMaximum| {
+        let (rise, fall) = smoothed.sides(m);
+        let is_wide = rise + fall > NARROWEST * smoothed.channel.width;
+        is_wide && (m.height > chosen.height || (m.at.abs_diff(chosen.at) as f64) < reach)
+    };
+    let may_be_pulse = |m: &SmoothedMaximum| {
+        let is_own = smoothed.maxima.iter().any(|own| own.at == m.at);
+        let is_low = kind == PulseKind::Reflected;
+        is_own || is_low && (may_be_fragment(m) || smoothed.is_significant(m))
+    };
+    let mut near = smoothed.maxima(fall);
+    near.retain(|m| {
+        let at = m.at as f64;
+        at > from && at < to && m.height > least.max(fall) && may_be_pulse(m)
+    });
     near.sort_by(|a, b| b.height.total_cmp(&a.height));
     let mut tops = vec![*chosen];
     for maximum in near {

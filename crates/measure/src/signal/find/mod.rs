@@ -168,8 +168,9 @@ fn gather(selection: &PulseSelection, views: [&Smoothed<'_>; 3]) -> Gathered {
     let pulses: [Option<Pulse>; 3] = std::array::from_fn(pulse);
     let others = (0..3).flat_map(|i| {
         let own = selection.maxima[i].iter();
-        let maxima =
-            own.flat_map(move |own| flags::other_maxima(views[i], selection.windows[i], own));
+        let maxima = own.flat_map(move |own| {
+            flags::other_maxima(views[i], selection.windows[i], own, PulseKind::ALL[i])
+        });
         maxima.map(move |other| views[i].pulse(PulseKind::ALL[i], &other))
     });
     let [sensor, wall, _] = views.map(|view| view.channel);

@@ -269,7 +269,8 @@ const REACH: f64 = 1.25;
 /// pulses of computed rows have up to 2.1.
 const HUMP: f64 = 3.0;
 /// Least and largest width of a reflected pulse in widths of the first pulse.
-const WIDTHS: (f64, f64) = (0.5, 2.5);
+pub(super) const NARROWEST: f64 = 0.5;
+const WIDEST: f64 = 2.5;
 
 impl Smoothed<'_> {
     /// Keeps, of the maxima between two samples, those that stand out of the noise on a falling
@@ -289,14 +290,14 @@ impl Smoothed<'_> {
     /// that falls ever more slowly lies below its chord and only makes the Gaussian lower. What is
     /// so wide that it may be the background's own hump must hold a pulse as wide as the first one
     /// beside a parabola.
-    fn is_significant(&self, maximum: &SmoothedMaximum) -> bool {
+    pub(super) fn is_significant(&self, maximum: &SmoothedMaximum) -> bool {
         let width = self.channel.width;
         let (rise, fall) = self.sides(maximum);
         if 2.0 * rise.min(fall) > HUMP * width {
             return self.significance(maximum, width, 4) > LEAST_SIGNIFICANCE;
         }
         // Noise may have made the maximum narrower than its pulse.
-        let own = (rise + fall).clamp(WIDTHS.0 * width, WIDTHS.1 * width);
+        let own = (rise + fall).clamp(NARROWEST * width, WIDEST * width);
         let mut widths = [own, width].into_iter();
         widths.any(|width| self.significance(maximum, width, 3) > LEAST_SIGNIFICANCE)
     }

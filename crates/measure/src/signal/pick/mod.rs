@@ -204,6 +204,20 @@ impl<'a> ChannelView<'a> {
         broad.max(self.normalisation.rounding(pulse.height))
     }
 
+    /// Of a maximum whose top noise hides: anywhere within its width, in samples.
+    fn hidden_top(&self, pulse: &Pulse, height_sigma: f64) -> Picked {
+        Picked {
+            time_s: pulse.at as f64,
+            sigma_s: pulse.width_samples / 12.0_f64.sqrt(),
+            systematic: Systematic::default(),
+            height: pulse.height,
+            height_sigma,
+            width_s: pulse.width_samples,
+            signal_to_noise: pulse.height / self.noise(pulse),
+            misfit: None,
+        }
+    }
+
     fn misfit(&self, pulse: &Pulse, residual: f64) -> Option<f64> {
         let noise = self.noise(pulse);
         (noise > 0.0).then(|| residual / noise)
@@ -243,7 +257,8 @@ pub(crate) fn pick(
     let competing = |kind| {
         let all = &found.competing;
         let other = all.iter().find(|other| other.pulse.kind == kind)?;
-        let picked = pick(&other.pulse).ok()?;
+        let top = || views[kind as usize].hidden_top(&other.pulse, other.lower.sigma);
+        let picked = pick(&other.pulse).unwrap_or_else(|_| top().in_seconds(interval_s));
         Some(CompetingPick { picked, lower: other.lower, superposition: other.superposition })
     };
     let mut competing = PulseKind::ALL.map(competing);
