@@ -162,5 +162,6 @@ pub(crate) fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'p
     found.set_item("columns", columns)?;
     found.set_item("errors", list(py, errors)?)?;
     found.set_item("warnings", columns::summary(whole.rows.warnings))?;
+    found.set_item("error_control", whole.error_control)?;
     Ok(found)
 }

@@ -91,6 +91,7 @@ def test_an_ensemble_broadcasts_as_numpy_does(small):
         for name, column in own.columns.items():
             # A shot's bits depend on no neighbour.
             assert np.array_equal(found[name][row], column, equal_nan=True), name
+    assert found.error_control.startswith("per shot: so few")
 
 
 def test_an_ensemble_of_no_dimension_is_one_shot(small):

@@ -527,6 +527,8 @@ class Ensemble(_Table):
         SI units of the named numbers.
     warnings : WarningSummary or None
         Warnings about the chain in some shots, such as a law out of its range.
+    error_control : str
+        How errors were controlled, and why.
     """
 
     _printed = ("tof_incident_s", "tof_reflected_s")
@@ -540,6 +542,7 @@ class Ensemble(_Table):
     parameter_units: dict[str, str]
     warnings: WarningSummary | None = None
     dimensionless: bool = False
+    error_control: str = ""
 
     def _coordinates(self) -> tuple[str, ...]:
         return ("speed_m_s", *self.parameters)

@@ -292,6 +292,7 @@ def gathered(experiment: Experiment, shape: tuple[int, ...], names: Sequence[str
         parameter_units={name: next((unit for path, unit in units if f".{path}".endswith(f".{name}")), "1") for name in names},
         warnings=summary,
         dimensionless=experiment.is_dimensionless,
+        error_control=found["error_control"],
     )
 
 
