@@ -8,7 +8,6 @@ import os
 import resource
 import subprocess
 import time
-from importlib import metadata
 from pathlib import Path
 
 import hertzchain
@@ -20,7 +19,7 @@ EXPERIMENTS = Path(__file__).resolve().parents[3] / "experiments"
 
 
 def version():
-    return metadata.version("hertzchain")
+    return hertzchain.__version__
 
 
 def clock(method):

@@ -43,4 +43,12 @@ mod _hertzchain {
     use super::spread::{Likelihood, fit_spread};
     #[pymodule_export]
     use super::theory::{check, instruction_set, laws, theory};
+
+    use pyo3::prelude::*;
+
+    /// The version, as of the package.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
 }

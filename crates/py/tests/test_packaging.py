@@ -5,7 +5,9 @@ import re
 import shutil
 import subprocess
 import sys
+from importlib import metadata
 
+import hertzchain
 from conftest import ROOT
 
 SCRIPT = ROOT / "packaging/set-version"
@@ -55,3 +57,7 @@ def test_no_sentence_of_a_tutorial_is_longer_than_forty_words():
             text = re.sub(pattern, "", text, flags=re.MULTILINE | re.DOTALL)
         for sentence in re.split(r"(?<=[.!?:])\s+|\n\s*\n|\n- ", text):
             assert len(sentence.split()) <= 40, f"{page.name}: {sentence}"
+
+
+def test_the_package_knows_its_version():
+    assert hertzchain.__version__ == metadata.version("hertzchain")

@@ -11,7 +11,7 @@ options and numbers as the ``hertzchain`` program.
 """
 
 from . import errors, experiment, inference, records, results, simulation
-from ._hertzchain import instruction_set
+from ._hertzchain import __version__, instruction_set
 from .errors import *
 from .experiment import *
 from .inference import design, fit, gauge
@@ -19,5 +19,5 @@ from .records import *
 from .results import *
 from .simulation import *
 
-__all__ = ["design", "fit", "gauge", "instruction_set"]
+__all__ = ["__version__", "design", "fit", "gauge", "instruction_set"]
 __all__ += errors.__all__ + experiment.__all__ + records.__all__ + results.__all__ + simulation.__all__
