@@ -224,8 +224,8 @@ impl Calibration {
         }
         let mut tried = Vec::new();
         // First the cheapest that serves nearly all, then what is cheaper for some.
-        let uniform = sample.halved.last().is_some_and(|(setting, _)| setting.passed);
-        if uniform && let Some(trial) = sample.sooner(&rest, &mut tried, NEARLY_ALL) {
+        let alone = sample.halved.last().is_some_and(|(setting, _)| setting.passed);
+        if alone && let Some(trial) = sample.sooner(&rest, &mut tried, NEARLY_ALL) {
             rest = chosen.add(trial);
         }
         while let Some(trial) = sample.sooner(&rest, &mut tried, 0.0) {

@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// One closed contact, as a law sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Closed {
-    /// Overlap δ ≥ 0 in m; for a law that is [`Nature::Adhesive`] below 0 across a gap.
+    /// Overlap δ ≥ 0 in m; below 0 across a gap for bridges and states that act there.
     pub overlap: f64,
     /// √δ, given by the loop so that laws need no square root of their own.
     pub root: f64,
