@@ -5,9 +5,11 @@
 //! cargo run --release -p hertzchain-random --example batches -- --preset pump --speeds 2000
 //! ```
 //!
-//! Speeds of a row are from a third to three times its own, of a preset from 0.075 to 1.23 m/s, evenly spread in
-//! their logarithm. A batch of them, as `sweep` makes it, is compared with shots by the adaptive loop at a hundredth
-//! of the accuracy asked, and where these contradict it with others at 1e-10. Accuracies are 1e-3 to 1e-7, by turns.
+//! `--preset FILE.toml` takes an experiment of one's own, and `--damping 14` varies its cubic coefficient (20 to 80 kg s/m²)
+//! and viscosity (10 to 30 kPa s) in so many steps each. Speeds of a row are from a third to three times its own, of a
+//! preset from 0.075 to 1.23 m/s, evenly spread in their logarithm. A batch of them, as `sweep` makes it (of it every K-th
+//! shot with `--every K`), is compared with shots by the adaptive loop at a hundredth of the accuracy asked, and where these
+//! contradict it with others at 1e-10. Accuracies are 1e-3 to 1e-7, by turns.
 #![allow(
     clippy::print_stdout,
     dead_code,
@@ -46,6 +48,8 @@ struct Tally {
     above_stated: u64,
     far_above: u64,
     worst: f64,
+    /// Shots a second of the last batch, on all threads.
+    rate_per_s: f64,
 }
 
 /// Incident and reflected time of flight in s, NaN where there is none.
@@ -60,10 +64,56 @@ fn error(one: Times, other: Times) -> f64 {
     change(0).max(change(1))
 }
 
-/// Times by the adaptive loop at the speeds.
-fn adaptive(experiment: &Experiment, speeds: &[f64], accuracy: f64) -> Result<Vec<Times>, Failure> {
-    let plan = |speed: &f64| Plan::from_experiment(experiment, Some(*speed));
-    let plans: Result<Vec<_>, _> = speeds.iter().map(plan).collect();
+/// A speed in m/s, and the cubic coefficient and viscosity where they vary.
+type Inputs = (f64, Option<[f64; 2]>);
+
+/// Paths of what a map of damping varies, with the least and the largest value.
+const DAMPING: [(&str, f64, f64); 2] = [
+    ("damping_cubic.coefficient", 20.0, 80.0),
+    ("materials.aisi316.shear_viscosity", 1e4, 3e4),
+];
+
+/// All speeds with all pairs of dampings.
+fn inputs(speeds: &[f64], steps: usize) -> Vec<Inputs> {
+    if steps == 0 {
+        return speeds.iter().map(|speed| (*speed, None)).collect();
+    }
+    let value = |of: usize, at: usize| {
+        let (_, least, most) = DAMPING[of];
+        least + (most - least) * at as f64 / (steps - 1) as f64
+    };
+    let pairs = (0..steps * steps).map(|at| [value(0, at / steps), value(1, at % steps)]);
+    pairs.flat_map(|pair| speeds.iter().map(move |speed| (*speed, Some(pair)))).collect()
+}
+
+fn with_damping(experiment: &Experiment, damping: Option<[f64; 2]>) -> Result<Experiment, Failure> {
+    let Some([one, two]) = damping else { return Ok(experiment.clone()) };
+    Ok(experiment.set(&[(DAMPING[0].0, one), (DAMPING[1].0, two)])?)
+}
+
+fn batch(experiment: &Experiment, inputs: &[Inputs], accuracy: f64) -> Result<Batch, Failure> {
+    let options = BatchOptions { accuracy, ..BatchOptions::of(experiment) };
+    let speeds = inputs.iter().map(|(speed, _)| *speed).collect();
+    let mut batch = Batch::new(experiment, speeds, options)?;
+    for (of, (path, ..)) in DAMPING.iter().enumerate() {
+        let values: Vec<f64> = inputs.iter().filter_map(|(_, it)| Some(it.as_ref()?[of])).collect();
+        if !values.is_empty() {
+            batch = batch.with_number(path, values)?;
+        }
+    }
+    Ok(batch)
+}
+
+/// Times by the adaptive loop.
+fn adaptive(
+    experiment: &Experiment,
+    inputs: &[Inputs],
+    accuracy: f64,
+) -> Result<Vec<Times>, Failure> {
+    let plan = |(speed, damping): &Inputs| -> Result<_, Failure> {
+        Ok(Plan::from_experiment(&with_damping(experiment, *damping)?, Some(*speed))?)
+    };
+    let plans: Result<Vec<_>, _> = inputs.iter().map(plan).collect();
     let plans: Vec<Plan> =
         plans?.into_iter().map(|(plan, _)| plan.with_accuracy(accuracy).for_flights()).collect();
     let control = Control::PerShot { checked: true };
@@ -77,17 +127,20 @@ fn adaptive(experiment: &Experiment, speeds: &[f64], accuracy: f64) -> Result<Ve
 
 fn compare(
     name: &str,
-    (experiment, speeds): (&Experiment, &str),
+    experiment: &Experiment,
+    (inputs, every): (&[Inputs], usize),
     accuracy: f64,
     tally: &mut Tally,
 ) -> Result<(), Failure> {
-    let speeds = parse_speeds(speeds)?;
-    let options = BatchOptions { accuracy, ..BatchOptions::of(experiment) };
-    let result = Batch::new(experiment, speeds.clone(), options)?.run(Shard::WHOLE, &|| {});
+    let begun = Instant::now();
+    let result = batch(experiment, inputs, accuracy)?.run(Shard::WHOLE, &|| {});
+    tally.rate_per_s = inputs.len() as f64 / begun.elapsed().as_secs_f64();
     let column = |of| result.rows.column(of);
-    let near = adaptive(experiment, &speeds, 0.01 * accuracy)?;
+    let places: Vec<usize> = (0..inputs.len()).step_by(every).collect();
+    let compared: Vec<Inputs> = places.iter().map(|&place| inputs[place]).collect();
+    let near = adaptive(experiment, &compared, 0.01 * accuracy)?;
     tally.batches += 1;
-    for (place, near) in near.into_iter().enumerate() {
+    for (place, near) in places.into_iter().zip(near) {
         let found = [Column::Incident, Column::Reflected].map(|of| column(of)[place]);
         let stated = column(Column::Accuracy)[place];
         tally.shots += 1;
@@ -98,7 +151,7 @@ fn compare(
         let allowed = if stated > 0.0 { stated.min(accuracy) } else { accuracy };
         let mut error_made = error(found, near);
         if error_made > allowed {
-            let exact = adaptive(experiment, &speeds[place..=place], EXACT)?;
+            let exact = adaptive(experiment, &inputs[place..=place], EXACT)?;
             error_made = error(found, exact[0]);
         }
         tally.worst = tally.worst.max(error_made / accuracy);
@@ -107,8 +160,8 @@ fn compare(
         tally.far_above += u64::from(error_made > 3.0 * accuracy);
         if error_made > allowed {
             println!(
-                "{name}, {} m/s at {accuracy:.0e}: {error_made:.2e}, stated {stated:.2e}, {found:?}; {}",
-                speeds[place], result.error_control
+                "{name}, {:?} at {accuracy:.0e}: {error_made:.2e}, stated {stated:.2e}, {found:?}; {}",
+                inputs[place], result.error_control
             );
         }
     }
@@ -117,7 +170,8 @@ fn compare(
 
 fn main() -> Result<(), Failure> {
     let (mut count, mut from, mut seed, mut speeds) = (0_u64, 0_u64, 1_u64, 50_usize);
-    let (mut presets, mut seconds, mut beads) = (Vec::new(), u64::MAX, 40_usize);
+    let (mut presets, mut seconds, mut beads, mut every) = (Vec::new(), u64::MAX, 40_usize, 1);
+    let mut damping = 0_usize;
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or("an option lacks its value");
@@ -125,6 +179,8 @@ fn main() -> Result<(), Failure> {
             "--from" => from = value()?.parse()?,
             "--seed" => seed = value()?.parse()?,
             "--speeds" => speeds = value()?.parse()?,
+            "--damping" => damping = value()?.parse()?,
+            "--every" => every = value()?.parse()?,
             "--beads" => beads = value()?.parse()?,
             "--seconds" => seconds = value()?.parse()?,
             "--preset" => presets.push(value()?),
@@ -134,10 +190,15 @@ fn main() -> Result<(), Failure> {
     let begun = Instant::now();
     let mut tallies = BTreeMap::<String, Tally>::new();
     for name in presets {
-        let experiment = preset(&name)?;
+        let experiment = match name.ends_with(".toml") {
+            true => Experiment::from_text(&name, &std::fs::read_to_string(&name)?)?,
+            false => preset(&name)?,
+        };
+        let speeds = parse_speeds(&format!("log:0.075:1.23:{speeds}"))?;
+        let inputs = inputs(&speeds, damping);
         for accuracy in ACCURACIES {
             let tally = tallies.entry(format!("{name} {accuracy:.0e}")).or_default();
-            compare(&name, (&experiment, &format!("log:0.075:1.23:{speeds}")), accuracy, tally)?;
+            compare(&name, &experiment, (&inputs, every), accuracy, tally)?;
         }
     }
     for at in (from..from + count).take_while(|_| begun.elapsed().as_secs() < seconds) {
@@ -148,31 +209,34 @@ fn main() -> Result<(), Failure> {
         let Ok(experiment) = Experiment::from_text("row.toml", &drawn.toml()) else { continue };
         let first = Instant::now();
         let own = [drawn.speed_m_s];
-        if adaptive(&experiment, &own, 1e-8).is_err() || first.elapsed().as_secs_f64() > PATIENCE_S
+        if adaptive(&experiment, &[(own[0], None)], 1e-8).is_err()
+            || first.elapsed().as_secs_f64() > PATIENCE_S
         {
             continue;
         }
         let accuracy = ACCURACIES[(at % 5) as usize];
-        let range = format!("log:{}:{}:{speeds}", own[0] / 3.0, own[0] * 3.0);
+        let range = parse_speeds(&format!("log:{}:{}:{speeds}", own[0] / 3.0, own[0] * 3.0))?;
         let tally = tallies.entry(format!("rows {accuracy:.0e}")).or_default();
         let name = format!("row {at} of seed {seed}");
-        if let Err(why) = compare(&name, (&experiment, &range), accuracy, tally) {
+        let inputs = inputs(&range, 0);
+        if let Err(why) = compare(&name, &experiment, (&inputs, every), accuracy, tally) {
             println!("{name}: {why}");
         }
     }
     println!(
-        "way\tbatches\tshots\tnot reached\tabove stated\tabove asked\tabove 3\tworst over asked"
+        "way\tbatches\tshots\tnot reached\tabove stated\tabove asked\tabove 3\tworst over asked\tshots/s"
     );
     for (name, of) in tallies {
         println!(
-            "{name}\t{}\t{}\t{}\t{}\t{}\t{}\t{:.2}",
+            "{name}\t{}\t{}\t{}\t{}\t{}\t{}\t{:.2}\t{:.0}",
             of.batches,
             of.shots,
             of.not_reached,
             of.above_stated,
             of.above_asked,
             of.far_above,
-            of.worst
+            of.worst,
+            of.rate_per_s
         );
     }
     Ok(())

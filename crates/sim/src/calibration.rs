@@ -10,7 +10,7 @@ use crate::accuracy;
 use crate::engine::{Setting, fit_together, run_lanes, suits, systems};
 use crate::plan::Plan;
 use crate::shot::{Conditioning, Shot};
-use hertzchain_chain::ensemble::Precision;
+use hertzchain_chain::ensemble::{End, Precision};
 use hertzchain_chain::observe::{Competing, Passage, Pulse};
 use hertzchain_chain::{InstructionSet, Start, System};
 use rayon::prelude::*;
@@ -90,11 +90,11 @@ const WITH_OPENINGS: [f64; 21] = [
 ];
 
 /// Settings, cheapest first.
-fn settings((passed, longest_s): (bool, f64)) -> Vec<Setting> {
+fn settings((end, longest_s): (End, f64)) -> Vec<Setting> {
     let of = |steps: &[f64], precision: Precision, openings: bool| {
         let setting = |&step: &f64| {
             let precision = Some(precision);
-            Setting { step, precision, openings, shapes: false, passed, longest_s }
+            Setting { step, precision, openings, shapes: false, end, longest_s }
         };
         steps.iter().map(setting).collect::<Vec<_>>()
     };
@@ -105,11 +105,24 @@ fn settings((passed, longest_s): (bool, f64)) -> Vec<Setting> {
     all
 }
 
-/// Cost of a step in double precision, of one that locates openings and of a shot that waits for
-/// whatever may come, over that of a step in single precision.
+/// Cost of a step in double precision and of one that locates openings over that of a step in
+/// single precision.
 const OF_DOUBLE: f64 = 2.0;
 const OF_OPENINGS: f64 = 1.2;
+
+/// Cost of a shot that waits for whatever may come over that of one that ends with its pulse.
 const OF_WAITING: f64 = 1.8;
+
+/// Time at which a pulse has passed the sensor on its way back, in times from the wall's peak to it.
+const PASSED: f64 = 1.1;
+
+/// Shots of a family wait so many times as long as its calibration shots take for all maxima of at least
+/// a share of the reflected pulse's height; those of half of it compete.
+const WATCHED: (f64, f64) = (1.05, 0.35);
+
+/// Highest share of a pulse's peak that a competing maximum may have for errors to be those of a smooth
+/// family: rounding, and what contacts do behind the pulse, move and merge higher ones.
+const CLEAR: f64 = 0.8;
 
 /// Cost of a shot of the adaptive loop, with two more to compare with, in steps of single precision
 /// a contact time.
@@ -177,6 +190,8 @@ struct Sample<'a> {
     systems: Vec<Option<Arc<System>>>,
     /// Those that have converged.
     exact: Vec<Option<Shot>>,
+    /// Which are far from exchanging maxima, converged or not.
+    clear: Vec<bool>,
     /// Settings with which that was found, the longest step first.
     halved: Vec<Tried>,
     set: InstructionSet,
@@ -224,8 +239,9 @@ impl Calibration {
         }
         let mut tried = Vec::new();
         // First the cheapest that serves nearly all, then what is cheaper for some.
-        let alone = sample.halved.last().is_some_and(|(setting, _)| setting.passed);
-        if alone && let Some(trial) = sample.sooner(&rest, &mut tried, NEARLY_ALL) {
+        if !sample.clear.contains(&false)
+            && let Some(trial) = sample.sooner(&rest, &mut tried, NEARLY_ALL)
+        {
             rest = chosen.add(trial);
         }
         while let Some(trial) = sample.sooner(&rest, &mut tried, 0.0) {
@@ -330,7 +346,8 @@ impl Tier {
         };
         let passage = shot.passage.as_ref();
         reached <= shot.accuracy_asked
-            && (!self.setting.passed || is_alone(shot))
+            && (self.setting.end != End::Passed || is_alone(shot))
+            && (self.setting.precision != Some(Precision::Single) || is_clear(shot))
             && passage.is_ok_and(|passage| !may_flip(passage, self.height_error))
             && other.is_none_or(agrees)
     }
@@ -384,11 +401,14 @@ impl<'a> Sample<'a> {
         let own = Setting { step: own.step.max(FIRST), ..own };
         let mut setting = Setting { precision, openings: true, shapes: false, ..own };
         let mut halved = vec![run(setting)];
-        // Where no maximum competes, shorter steps need not wait for whatever may come.
-        setting.passed = halved[0].1.iter().flatten().all(is_alone);
+        let first = &halved[0].1;
+        // Shorter steps need not wait for whatever may come.
+        setting.end = end(first);
+        let clear: Vec<bool> =
+            first.iter().map(|shot| shot.as_ref().is_none_or(is_clear)).collect();
         for halving in 1..=MOST_HALVINGS {
             let step = own.step * 0.5_f64.powi(halving as i32);
-            if !setting.passed && (!by_speed || tight) {
+            if clear.contains(&false) && (!by_speed || tight) {
                 return Err("several maxima compete for the reflected pulse");
             }
             halved.push(run(Setting { step, ..setting }));
@@ -402,7 +422,7 @@ impl<'a> Sample<'a> {
             let exact: Vec<Option<Shot>> = coarse.iter().zip(fine).map(converged).collect();
             let converged = exact.iter().flatten().count() as f64;
             if converged >= CONVERGED * plans.len() as f64 {
-                return Ok(Self { plans, systems, exact, halved, set, by_speed });
+                return Ok(Self { plans, systems, exact, clear, halved, set, by_speed });
             }
         }
         Err("calibration shots do not converge")
@@ -418,8 +438,10 @@ impl<'a> Sample<'a> {
         let right: Vec<Option<Shot>> = (0..shots.len()).map(right).collect();
         let hidden = |(shot, exact): (&Shot, &Shot)| shot.change(exact) > shot.accuracy_asked;
         let hides = pairs(&right, &self.exact).any(hidden);
+        let single = setting.precision == Some(Precision::Single);
         for (record, near) in tier.records.iter_mut().zip(self.near()) {
-            record.serves = right[near].iter().any(Option::is_some);
+            let clear = !self.clear[near.clone()].contains(&false);
+            record.serves = (clear || !single) && right[near].iter().any(Option::is_some);
         }
         let cost = |((record, right), rest): ((&Record, &Option<Shot>), &f64)| {
             let own = if record.serves { cost(setting) } else { 0.0 };
@@ -460,10 +482,12 @@ impl<'a> Sample<'a> {
                 pairs(shots, exact).filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
             same.map(|(shot, exact)| (shot.clone(), shot.change(exact) + rest)).collect()
         };
-        let competing = if setting.passed { 1.0 } else { OF_COMPETING };
         let of_maps = if !self.by_speed && accuracy < 1e-5 { OF_MAPS } else { 1.0 };
-        let margin = competing * of_maps * MARGIN[usize::from(self.by_speed)];
         let record = |(at, near): (usize, Range<usize>)| {
+            let clear = accuracy >= 1e-5 && !self.clear[near.clone()].contains(&false);
+            let calm = clear || setting.end == End::Passed;
+            let competing = if calm { 1.0 } else { OF_COMPETING };
+            let margin = competing * of_maps * MARGIN[usize::from(self.by_speed)];
             let known = shots[near.clone()].iter().flatten();
             let usual = quantile(known.map(|shot| shot.conditioning.interpolation).collect(), 0.5);
             let errors = same(&shots[near.clone()], &self.exact[near]);
@@ -488,16 +512,14 @@ impl<'a> Sample<'a> {
     /// The setting that makes shots cheapest in front of others with which each costs `rest`, of
     /// those that are right enough for a least share of them.
     fn sooner(&self, rest: &[f64], tried: &mut Vec<Tried>, least_share: f64) -> Option<Trial> {
-        let passed = self.exact.iter().flatten().all(is_alone);
+        let end = self.halved.last().map_or(End::Reflected, |(setting, _)| setting.end);
         // Steps too long for strong losses make motion that never ends.
         let durations_s = self.exact.iter().flatten().map(|shot| shot.duration_s);
         let longest_s = LONGEST * durations_s.fold(0.0, f64::max);
         let mut best: Option<Trial> = None;
         // The longest step worth trying, of each kind of setting.
         let mut longest: Vec<(Setting, f64)> = Vec::new();
-        // Rounding moves maxima that compete further than calibration shots show.
-        let right = |setting: &Setting| passed || setting.precision == Some(Precision::Double);
-        for setting in settings((passed, longest_s)).into_iter().filter(right) {
+        for setting in settings((end, longest_s)) {
             let least = best.as_ref().map_or(LESS * mean(rest), |best| best.expected);
             if cost(&setting) >= least {
                 break;
@@ -574,20 +596,57 @@ fn side_by_side(
     parts.flat_map_iter(|(plans, systems)| run_lanes(plans, systems, set, setting)).collect()
 }
 
+/// Share of the highest maximum that competes with the reflected pulse of a shot.
+fn competing_share(shot: &Shot) -> f64 {
+    let Ok(passage) = &shot.passage else { return f64::INFINITY };
+    passage.highest_competing(&[Pulse::Reflected]).map_or(0.0, |other| other.share)
+}
+
 /// Whether nothing competes with the reflected pulse of a shot, which is then over when it has
 /// passed. Small errors exchange and merge maxima that compete, and runs with equal steps may
 /// have the same errors.
 fn is_alone(shot: &Shot) -> bool {
-    let of_return = |other: &Competing| other.pulse == Pulse::Reflected;
-    let passage = shot.passage.as_ref();
-    passage.is_ok_and(|passage| !passage.competing.iter().any(of_return))
+    competing_share(shot) == 0.0
+}
+
+/// Whether nothing nearly as high as the reflected pulse competes with it.
+fn is_clear(shot: &Shot) -> bool {
+    competing_share(shot) <= CLEAR
+}
+
+/// When shots like these, which were followed to the end, are over.
+fn end(shots: &[Option<Shot>]) -> End {
+    if shots.iter().flatten().all(is_alone) {
+        return End::Passed;
+    }
+    let last = shots.iter().flatten().map(last_watched).fold(PASSED, f64::max);
+    if last.is_finite() { End::Behind(WATCHED.0 * last) } else { End::Reflected }
+}
+
+/// The time of the last returning maximum that is watched, from the wall's peak, over that of the reflected
+/// pulse; infinite without one.
+fn last_watched(shot: &Shot) -> f64 {
+    let Some((passage, peak)) =
+        shot.passage.as_ref().ok().and_then(|passage| Some((passage, passage.reflected?)))
+    else {
+        return f64::INFINITY;
+    };
+    let watched = passage.returning_maxima.iter().rev();
+    let last =
+        watched.filter(|maximum| maximum.value >= WATCHED.1 * peak.value).map(|it| it.time_s);
+    let ways = |time_s: f64| (time_s - passage.wall.time_s) / (peak.time_s - passage.wall.time_s);
+    last.map(ways).next().unwrap_or(f64::INFINITY)
 }
 
 /// Cost of a shot, in steps of single precision a contact time.
 fn cost(setting: &Setting) -> f64 {
     let double = if setting.precision == Some(Precision::Single) { 1.0 } else { OF_DOUBLE };
     let openings = if setting.openings { OF_OPENINGS } else { 1.0 };
-    let waiting = if setting.passed { 1.0 } else { OF_WAITING };
+    let waiting = match setting.end {
+        End::Behind(ways) => (1.0 + ways) / (1.0 + PASSED),
+        End::Reflected => OF_WAITING,
+        End::Passed | End::Duration => 1.0,
+    };
     double * openings * waiting / setting.step
 }
 

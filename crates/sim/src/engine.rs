@@ -10,7 +10,7 @@ use crate::duration::{self, has_wall};
 use crate::error::StudyError;
 use crate::plan::Plan;
 use crate::prepared::{closed_gaps, is_ambiguous};
-use crate::shot::{Conditioning, Shot, ambiguous, shoot, shoot_checked};
+use crate::shot::{Conditioning, Shot, ambiguous, shoot, shoot_checked, shoot_confirmed};
 use crate::stop::stopped;
 use hertzchain_chain::ensemble::{self, End, LaneResult, Precision};
 use hertzchain_chain::laws::{Law, Nature};
@@ -75,18 +75,23 @@ pub fn run_plans(
         }
         open = later;
     }
+    let mut right = vec![true; plans.len()];
     for at in open {
-        shots[at] = None;
+        right[at] = false;
     }
     // What needs a closer look takes the adaptive loop.
-    let closer = |(plan, shot): (&Plan, Option<Shot>)| {
-        shot.map(Ok).unwrap_or_else(|| {
-            let shot = shoot_checked(plan);
+    let closer = |((plan, shot), right): ((&Plan, Option<Shot>), bool)| match (shot, right) {
+        (Some(shot), true) => Ok(shot),
+        (shot, _) => {
+            let shot = match shot {
+                Some(near) => shoot_confirmed(plan, &near),
+                None => shoot_checked(plan),
+            };
             progress();
             shot
-        })
+        }
     };
-    plans.par_iter().zip(shots).map(closer).collect()
+    plans.par_iter().zip(shots).zip(right).map(closer).collect()
 }
 
 /// Runs plans that go together block by block, on all threads; results are in order.
@@ -136,7 +141,7 @@ fn run_block(
 }
 
 /// Shots with the step for their accuracy alone.
-fn unchecked(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+pub(crate) fn unchecked(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
     let once = |own: Setting| {
         let bare = Setting { shapes: false, ..own };
         run_lanes(plans, &systems(plans), set, &bare)
@@ -258,9 +263,8 @@ pub(crate) struct Setting {
     pub openings: bool,
     /// Pulses have widths, whether or not a pick needs their shape.
     pub shapes: bool,
-    /// Shots end once the reflected pulse has passed, not when none can come
-    /// any more.
-    pub passed: bool,
+    /// When shots without a duration of their own are over.
+    pub end: End,
     /// Shots that last longer fail.
     pub longest_s: f64,
 }
@@ -273,7 +277,7 @@ impl Setting {
             precision: None,
             openings,
             shapes: true,
-            passed: false,
+            end: End::Reflected,
             longest_s: f64::INFINITY,
         })
     }
@@ -288,15 +292,11 @@ impl Setting {
 
     /// The same with longer steps, to compare with; these shots wait for whatever may come.
     pub(crate) fn longer(self, times: f64) -> Self {
-        Self { step: times * self.step, shapes: false, passed: false, ..self }
+        Self { step: times * self.step, shapes: false, end: End::Reflected, ..self }
     }
 
     fn end(&self, plan: &Plan) -> End {
-        match (plan.duration_s, self.passed) {
-            (Some(_), _) => End::Duration,
-            (None, true) => End::Passed,
-            (None, false) => End::Reflected,
-        }
+        plan.duration_s.map_or(self.end, |_| End::Duration)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Running a plan: once, with steps halved, or again to check.
 
 use crate::accuracy::{self, Forecast, Halvings, MOST_HALVINGS, TIGHTEST};
-use crate::duration::{self, End};
+use crate::duration::{self, End, LONG_CHAIN};
+use crate::engine::unchecked;
 use crate::error::StudyError;
 use crate::long_work::CountedShots;
 use crate::other_picks::other_picks;
@@ -11,7 +12,7 @@ use crate::stop::stopped;
 use crate::tracker::Tracker;
 use hertzchain_chain::observe::{Apart, PassageError, Separation, Trace, Tracer};
 use hertzchain_chain::wave::{Limits, Method, Observer, Outcome, run};
-use hertzchain_chain::{Start, System};
+use hertzchain_chain::{InstructionSet, Start, System};
 use hertzchain_experiment::Method as SolverMethod;
 use std::sync::Arc;
 
@@ -59,14 +60,17 @@ fn residual(shot: &Shot) -> f64 {
 }
 
 /// How the error of a shot is controlled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Check {
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Check<'a> {
     /// Computed once, by its tolerance alone.
     Unchecked,
     /// Compared with looser runs, computed more tightly where they differ.
     Estimated,
     /// Compared with a run at a tenth of the tolerance.
     Again,
+    /// At a tenth of the tolerance, compared with a computation by another method; as
+    /// [`Check::Again`] where that differs.
+    By(&'a Shot),
 }
 
 /// A plan with its system and the end of its shot.
@@ -88,7 +92,7 @@ impl<'a> PreparedShot<'a> {
     }
 
     /// The shot, with the accuracy reached unless it is unchecked.
-    pub(crate) fn run(&self, check: Check) -> Result<Shot, StudyError> {
+    pub(crate) fn run(&self, check: Check<'_>) -> Result<Shot, StudyError> {
         let mut shot = self.computed(check)?;
         shot.notes.extend(closed_gaps(self.plan, &self.system));
         let passage = shot.passage.as_ref().ok();
@@ -103,7 +107,7 @@ impl<'a> PreparedShot<'a> {
         Ok(shot)
     }
 
-    fn computed(&self, check: Check) -> Result<Shot, StudyError> {
+    fn computed(&self, check: Check<'_>) -> Result<Shot, StudyError> {
         match (self.plan.method, self.plan.step_s) {
             (SolverMethod::Adaptive, _) => self.adaptive(check),
             (method, Some(step_s)) => self.fixed(method, step_s, check),
@@ -111,8 +115,19 @@ impl<'a> PreparedShot<'a> {
         }
     }
 
-    fn adaptive(&self, check: Check) -> Result<Shot, StudyError> {
+    fn adaptive(&self, check: Check<'_>) -> Result<Shot, StudyError> {
         let (tolerance, beyond) = accuracy::tolerance(self.plan);
+        let near = match check {
+            Check::By(other) if 0.1 * tolerance >= TIGHTEST => {
+                let mut near = self.tightened(0.1 * tolerance, false)?;
+                if self.agrees(&near, other) {
+                    self.note_reached(&mut near, self.plan.accuracy);
+                    return Ok(near);
+                }
+                Some(near)
+            }
+            _ => None,
+        };
         let (mut shot, tolerance) = self.balanced(tolerance)?;
         if beyond {
             shot.notes.push(format!(
@@ -122,9 +137,12 @@ impl<'a> PreparedShot<'a> {
         }
         match check {
             Check::Unchecked => {}
+            Check::Estimated if self.is_confirmed(&shot) => {
+                self.note_reached(&mut shot, self.plan.accuracy);
+            }
             // Without a budget the tolerance is looser, and looser runs say less.
             Check::Estimated if self.plan.budget => self.estimate(&mut shot, tolerance)?,
-            Check::Estimated | Check::Again => self.refine(&mut shot, tolerance)?,
+            _ => self.refine(&mut shot, tolerance, near)?,
         }
         Ok(shot)
     }
@@ -226,13 +244,19 @@ impl<'a> PreparedShot<'a> {
     /// Computes a shot again at a tenth and a hundredth of the tolerance; where that
     /// shows that the accuracy was not reached, a finer shot takes its place. Two finer
     /// runs, because one agrees by chance with one shot in a hundred that is wrong.
-    fn refine(&self, shot: &mut Shot, mut tolerance: f64) -> Result<(), StudyError> {
+    fn refine(
+        &self,
+        shot: &mut Shot,
+        mut tolerance: f64,
+        near: Option<Shot>,
+    ) -> Result<(), StudyError> {
         let finer = |tolerance: f64| match tolerance < LEAST_CHECK {
             true => Ok(None),
             false => self.tightened(tolerance, false).map(Some),
         };
         let of_plan = accuracy::margin(self.plan);
-        let (mut near, mut far) = (finer(0.1 * tolerance)?, finer(0.01 * tolerance)?);
+        let mut near = near.map_or_else(|| finer(0.1 * tolerance), |near| Ok(Some(near)))?;
+        let mut far = finer(0.01 * tolerance)?;
         loop {
             let change = |other: &Option<Shot>| other.as_ref().map_or(0.0, |it| shot.change(it));
             let reached = accuracy::reached([change(&near), change(&far)], of_plan, tolerance);
@@ -255,15 +279,38 @@ impl<'a> PreparedShot<'a> {
         }
     }
 
+    /// Whether a shot, computed more tightly than was asked, agrees with one by another method.
+    fn agrees(&self, shot: &Shot, other: &Shot) -> bool {
+        let reached = standing(shot, shot.change(other), shot.height_change(other));
+        reached <= self.plan.accuracy
+    }
+
+    /// Whether a run with equal steps, which takes a tenth of the time, agrees with a shot that its budget
+    /// made tighter than was asked.
+    fn is_confirmed(&self, shot: &Shot) -> bool {
+        let short = self.plan.chain.beads.len() < LONG_CHAIN;
+        if !(self.plan.budget && short && accuracy::is_gentle(self.plan)) {
+            return false;
+        }
+        let plan = Plan { budget: false, watch: None, ..self.plan.clone() }.for_flights();
+        let other = unchecked(&[&plan], InstructionSet::default()).pop().flatten();
+        other.is_some_and(|other| self.agrees(shot, &other))
+    }
+
     /// A fixed step as given, whatever accuracy that is: estimated by a step twice as
     /// long, or by half of it where that fails or a check is asked for.
-    fn fixed(&self, method: SolverMethod, step_s: f64, check: Check) -> Result<Shot, StudyError> {
+    fn fixed(
+        &self,
+        method: SolverMethod,
+        step_s: f64,
+        check: Check<'_>,
+    ) -> Result<Shot, StudyError> {
         let mut shot = self.at_step(method, step_s, self.plan.watch.is_some())?;
         let at = |share: f64| self.at_step(method, share * step_s, false);
         let other = match check {
             Check::Unchecked => return Ok(shot),
             Check::Estimated => at(2.0).or_else(|_| at(0.5))?,
-            Check::Again => at(0.5)?,
+            Check::Again | Check::By(_) => at(0.5)?,
         };
         let reached =
             accuracy::reached([shot.change(&other), 0.0], accuracy::margin(self.plan), 0.0);

@@ -273,6 +273,15 @@ pub fn shoot_checked(plan: &Plan) -> Result<Shot, StudyError> {
     PreparedShot::new(plan)?.run(Check::Again)
 }
 
+/// Runs a shot of which a computation by another method is known: where both agree, once and at
+/// a tenth of the tolerance; else as [`shoot_checked`].
+///
+/// # Errors
+/// See [`StudyError`].
+pub(crate) fn shoot_confirmed(plan: &Plan, other: &Shot) -> Result<Shot, StudyError> {
+    PreparedShot::new(plan)?.run(Check::By(other))
+}
+
 /// Errors of peaks over the accuracy asked of times, at most.
 pub const OF_PEAKS: f64 = 50.0;
 

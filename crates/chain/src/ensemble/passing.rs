@@ -5,7 +5,7 @@ use super::record::Samples;
 use crate::observe::{RETURN_WITHIN, WALL_WITHIN};
 
 /// When a shot is over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
     /// After its duration.
     Duration,
@@ -19,6 +19,9 @@ pub enum End {
     /// far behind that pulse on its way back are left as they are: they cannot
     /// overtake it.
     Passed,
+    /// So many times as late after the wall's peak as the first sensor's largest sample since, once
+    /// the pulse has had the time to return: for rows whose other maxima are known to be earlier.
+    Behind(f64),
 }
 
 /// The sensor signal has passed below this fraction of its maximum.
@@ -144,10 +147,15 @@ impl Passing {
         let too_late = (WALL_WITHIN * wall).max(wall + RETURN_WITHIN * self.way());
         let back = self.returned;
         let returned = RETURNED * self.wall.value * self.wall.value;
-        let passed = back.value > silent_n
-            && back.value * self.incident.value > returned
-            && self.now < FALLEN * back.value
-            && self.seen > back.step + MARGIN;
-        self.seen as f64 > too_late + MARGIN as f64 || (end == End::Passed && passed)
+        let is_back = back.value > silent_n && back.value * self.incident.value > returned;
+        let passed = match end {
+            End::Passed => self.now < FALLEN * back.value && self.seen > back.step + MARGIN,
+            End::Behind(ways) => {
+                let behind = wall + ways * (back.step as f64 - wall);
+                self.seen as f64 > behind + MARGIN as f64
+            }
+            End::Duration | End::Reflected => false,
+        };
+        self.seen as f64 > too_late + MARGIN as f64 || (is_back && passed)
     }
 }
