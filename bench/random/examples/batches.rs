@@ -68,10 +68,8 @@ fn error(one: Times, other: Times) -> f64 {
 type Inputs = (f64, Option<[f64; 2]>);
 
 /// Paths of what a map of damping varies, with the least and the largest value.
-const DAMPING: [(&str, f64, f64); 2] = [
-    ("damping_cubic.coefficient", 20.0, 80.0),
-    ("materials.aisi316.shear_viscosity", 1e4, 3e4),
-];
+const DAMPING: [(&str, f64, f64); 2] =
+    [("damping_cubic.coefficient", 20.0, 80.0), ("materials.aisi316.shear_viscosity", 1e4, 3e4)];
 
 /// All speeds with all pairs of dampings.
 fn inputs(speeds: &[f64], steps: usize) -> Vec<Inputs> {

@@ -7,15 +7,15 @@
 //! error from its own condition (`docs/explanation/numerics.md`).
 
 use crate::accuracy;
+use crate::alike::{Places, speed_m_s};
 use crate::engine::{Setting, fit_together, run_lanes, suits, systems};
 use crate::plan::Plan;
 use crate::shot::{Conditioning, Shot};
 use hertzchain_chain::ensemble::{End, Precision};
 use hertzchain_chain::observe::{Competing, Passage, Pulse};
-use hertzchain_chain::{InstructionSet, Start, System};
+use hertzchain_chain::{InstructionSet, System};
 use rayon::prelude::*;
 use std::fmt::{Display, Formatter, Result as Formatted};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// Calibration shots of a batch over speeds, and of one in which other numbers differ too.
@@ -30,26 +30,25 @@ const TIGHTER: f64 = 20.0;
 /// Most times that steps are halved for that.
 const MOST_HALVINGS: usize = 6;
 
-/// Estimates are this many times the largest error of all calibration shots over their condition, or
-/// of the [`NEAREST`] in speed: in between others may be worse.
-const MARGIN: [f64; 2] = [1.5, 2.0];
+/// Estimates are this many times the largest error over the condition of the calibration shots most
+/// like one: in between others may be worse.
+const MARGIN: f64 = 2.0;
 
 /// And so many times as large where reflected maxima compete, because what contacts do behind the pulse
 /// scatters errors: with 1.5, 3 of 601 shots of pump oil at 1e-6 were wrong by up to 1.4 times what was asked.
 const OF_COMPETING: f64 = 2.5;
 
 /// And so many times as large where other numbers than the speed vary and less than 1e-5 is asked: with 1,
-/// 2 of 285 shots of a map of damping at 1e-6 were more wrong than they stated, by up to 1.6 times.
-const OF_MAPS: f64 = 1.7;
+/// 2 of 345 shots of a map of damping at 1e-6 were more wrong than they stated, by up to 1.13 times.
+const OF_MAPS: f64 = 1.25;
 
-/// Tightest accuracy at which rows whose maxima compete are calibrated, and those in which other numbers
-/// than the speed vary: at 1e-7 errors scatter more than calibration shots show, and 14 of 1,501 shots of
-/// motor oil, 1 of 364 of a map of damping were wrong by up to 1.5 times what was asked.
+/// Below this accuracy errors of rows whose maxima compete, and of those in which other numbers than the speed
+/// vary, scatter more than calibration shots show: at 1e-7 14 of 1,501 shots of motor oil and 6 of 1,035 of maps
+/// of damping were wrong by up to 2.3 times what was asked. Two settings must then agree.
 const LEAST_OF_SCATTERED: f64 = 1e-6;
 
-/// Calibration shots that say how wrong one of a speed between theirs is: what a row does behind
-/// its pulse changes with speed.
-const NEAREST: usize = 16;
+/// So many times their difference is at most what was asked.
+const OF_SECOND: f64 = 2.0;
 
 /// A peak whose interpolations differ by more than this many times what is usual has a kink near its
 /// top, or another maximum, and may be wrong by so many times what is above that: pump and motor oil,
@@ -162,16 +161,18 @@ pub struct Calibration {
 #[derive(Clone, Debug)]
 pub(crate) struct Tier {
     setting: Setting,
-    /// By speed, one of each calibration shot.
+    places: Arc<Places>,
+    /// Shots are right only where another setting agrees with them.
+    twice: bool,
+    /// One of each calibration shot.
     records: Vec<Record>,
     /// Relative error of a peak's height, with a margin.
     height_error: f64,
 }
 
-/// What the calibration shots about a speed show.
+/// What the calibration shots like one show.
 #[derive(Clone, Copy, Debug)]
 struct Record {
-    speed_m_s: f64,
     /// Relative error of a time of flight over the shot's condition, with a margin.
     error: f64,
     margin: f64,
@@ -188,14 +189,14 @@ type Tried = (Setting, Vec<Option<Shot>>);
 struct Sample<'a> {
     plans: Vec<&'a Plan>,
     systems: Vec<Option<Arc<System>>>,
-    /// Those that have converged.
-    exact: Vec<Option<Shot>>,
+    /// The tightest, without kinks near their peaks, with bounds on their errors.
+    exact: Vec<Option<(Shot, f64)>>,
     /// Which are far from exchanging maxima, converged or not.
     clear: Vec<bool>,
     /// Settings with which that was found, the longest step first.
     halved: Vec<Tried>,
     set: InstructionSet,
-    by_speed: bool,
+    places: Arc<Places>,
 }
 
 impl Calibration {
@@ -319,37 +320,47 @@ fn kink(interpolation: f64, usual: f64) -> f64 {
 }
 
 impl Tier {
-    fn record(&self, plan: &Plan) -> Option<&Record> {
-        let own = speed_m_s(plan);
-        let next = self.records.partition_point(|record| record.speed_m_s < own);
-        let near = self.records.get(next.saturating_sub(1)..)?.iter().take(2);
-        let off = |record: &Record| (record.speed_m_s - own).abs();
-        near.min_by(|a, b| off(a).total_cmp(&off(b)))
-    }
-
     /// Whether it is worth trying at a plan's speed.
     pub(crate) fn serves(&self, plan: &Plan) -> bool {
-        self.record(plan).is_some_and(|record| record.serves)
+        let at_speed = || self.places.closest(plan, None).is_some_and(|at| self.records[at].serves);
+        !self.places.by_speed || at_speed()
     }
 
     /// Estimates the error of a shot. Whether it is what was asked, and does not differ by more
     /// than both estimates from the shot of another setting: what a kink near a peak does depends
     /// on where steps lie.
     pub(crate) fn is_right(&self, plan: &Plan, shot: &mut Shot, other: Option<&Shot>) -> bool {
-        let Some(record) = self.record(plan) else {
+        let is_small = self.is_small(plan, shot);
+        let own = shot.accuracy_reached.unwrap_or(f64::INFINITY);
+        let agrees = |other: &Shot| {
+            let most = match self.twice {
+                true => shot.accuracy_asked / OF_SECOND,
+                false => own + other.accuracy_reached.unwrap_or(f64::INFINITY),
+            };
+            shot.change(other) <= most
+        };
+        let agrees = other.map_or(!self.twice, agrees);
+        if self.twice && agrees {
+            // Two settings confirm the accuracy asked and no better one.
+            shot.accuracy_reached = Some(own.max(shot.accuracy_asked));
+        }
+        is_small && agrees
+    }
+
+    /// Estimates the error of a shot, and whether it is at most what was asked.
+    fn is_small(&self, plan: &Plan, shot: &mut Shot) -> bool {
+        let Some(at) = self.places.closest(plan, Some(shot)) else {
             return false;
         };
+        let record = &self.records[at];
         let reached = record.estimate(&shot.conditioning);
         shot.accuracy_reached = Some(reached);
-        let agrees = |other: &Shot| {
-            shot.change(other) <= reached + other.accuracy_reached.unwrap_or(f64::INFINITY)
-        };
         let passage = shot.passage.as_ref();
         reached <= shot.accuracy_asked
+            && record.serves
             && (self.setting.end != End::Passed || is_alone(shot))
             && (self.setting.precision != Some(Precision::Single) || is_clear(shot))
             && passage.is_ok_and(|passage| !may_flip(passage, self.height_error))
-            && other.is_none_or(agrees)
     }
 }
 
@@ -386,10 +397,6 @@ impl<'a> Sample<'a> {
         own: Setting,
         (by_speed, set): (bool, InstructionSet),
     ) -> Result<Self, &'static str> {
-        let tight = plans[0].accuracy < LEAST_OF_SCATTERED;
-        if tight && !by_speed {
-            return Err("where other numbers than the speed vary, errors scatter below 1e-6");
-        }
         let mut plans: Vec<&Plan> = plans.iter().collect();
         plans.sort_by(|a, b| speed_m_s(a).total_cmp(&speed_m_s(b)));
         let systems = systems(&plans);
@@ -408,21 +415,24 @@ impl<'a> Sample<'a> {
             first.iter().map(|shot| shot.as_ref().is_none_or(is_clear)).collect();
         for halving in 1..=MOST_HALVINGS {
             let step = own.step * 0.5_f64.powi(halving as i32);
-            if clear.contains(&false) && (!by_speed || tight) {
+            if clear.contains(&false) && !by_speed {
                 return Err("several maxima compete for the reflected pulse");
             }
             halved.push(run(Setting { step, ..setting }));
             let [.., (_, coarse), (_, fine)] = &halved[..] else { break };
-            let converged = |(coarse, fine): (&Option<Shot>, &Option<Shot>)| {
+            let smooth = |(coarse, fine): (&Option<Shot>, &Option<Shot>)| {
                 let (coarse, fine) = (coarse.as_ref()?, fine.as_ref()?);
-                let change = fine.change(coarse);
-                let right = change <= OF_HALVING * fine.accuracy_asked / TIGHTER;
-                (right && is_smooth(coarse) && is_smooth(fine)).then(|| fine.clone())
+                let error = fine.change(coarse) / OF_HALVING;
+                (is_smooth(coarse) && is_smooth(fine)).then(|| (fine.clone(), error))
             };
-            let exact: Vec<Option<Shot>> = coarse.iter().zip(fine).map(converged).collect();
-            let converged = exact.iter().flatten().count() as f64;
+            let mut exact: Vec<Option<(Shot, f64)>> = coarse.iter().zip(fine).map(smooth).collect();
+            let rest = plans[0].accuracy / TIGHTER;
+            let converged =
+                exact.iter().flatten().filter(|(_, error)| *error <= rest).count() as f64;
+            exact.iter_mut().flatten().for_each(|(_, error)| *error = error.max(rest));
             if converged >= CONVERGED * plans.len() as f64 {
-                return Ok(Self { plans, systems, exact, clear, halved, set, by_speed });
+                let places = Arc::new(Places::new(&plans, &halved[0].1, by_speed));
+                return Ok(Self { plans, systems, exact, clear, halved, set, places });
             }
         }
         Err("calibration shots do not converge")
@@ -433,15 +443,18 @@ impl<'a> Sample<'a> {
         let mut tier = self.tier(setting, shots);
         let right = |at: usize| {
             let mut shot = shots[at].clone()?;
-            tier.is_right(self.plans[at], &mut shot, None).then_some(shot)
+            tier.is_small(self.plans[at], &mut shot).then_some(shot)
         };
         let right: Vec<Option<Shot>> = (0..shots.len()).map(right).collect();
-        let hidden = |(shot, exact): (&Shot, &Shot)| shot.change(exact) > shot.accuracy_asked;
+        let hidden = |(shot, (exact, error)): (&Shot, &(Shot, f64))| {
+            shot.change(exact) > shot.accuracy_asked + error
+        };
         let hides = pairs(&right, &self.exact).any(hidden);
         let single = setting.precision == Some(Precision::Single);
-        for (record, near) in tier.records.iter_mut().zip(self.near()) {
-            let clear = !self.clear[near.clone()].contains(&false);
-            record.serves = (clear || !single) && right[near].iter().any(Option::is_some);
+        for (at, record) in tier.records.iter_mut().enumerate() {
+            let near = self.places.near(at);
+            let clear = near.iter().all(|&at| self.clear[at]);
+            record.serves = (clear || !single) && near.iter().any(|&at| right[at].is_some());
         }
         let cost = |((record, right), rest): ((&Record, &Option<Shot>), &f64)| {
             let own = if record.serves { cost(setting) } else { 0.0 };
@@ -461,50 +474,40 @@ impl<'a> Sample<'a> {
         Trial { expected, share, costs, reached, excess: quantile(all.collect(), 0.25), tier }
     }
 
-    /// For each calibration shot those about its speed.
-    fn near(&self) -> impl Iterator<Item = Range<usize>> + use<> {
-        let (count, by_speed) = (self.plans.len(), self.by_speed);
-        (0..count).map(move |at| match by_speed {
-            true => {
-                let first = at.saturating_sub(NEAREST / 2).min(count.saturating_sub(NEAREST));
-                first..(first + NEAREST).min(count)
-            }
-            false => 0..count,
-        })
-    }
-
     /// A setting with what its shots show.
     fn tier(&self, setting: &Setting, shots: &[Option<Shot>]) -> Tier {
         let accuracy = self.plans[0].accuracy;
         let rest = accuracy / TIGHTER;
-        let same = |shots: &'_ [Option<Shot>], exact: &'_ [Option<Shot>]| -> Vec<(Shot, f64)> {
-            let same =
-                pairs(shots, exact).filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
-            same.map(|(shot, exact)| (shot.clone(), shot.change(exact) + rest)).collect()
+        let same = |at: usize| {
+            let (shot, (exact, error)) = (shots[at].as_ref()?, self.exact[at].as_ref()?);
+            shot.has_peaks_of(exact, SAME_PEAK).then(|| (shot, shot.change(exact) + error))
         };
-        let of_maps = if !self.by_speed && accuracy < 1e-5 { OF_MAPS } else { 1.0 };
-        let record = |(at, near): (usize, Range<usize>)| {
-            let clear = accuracy >= 1e-5 && !self.clear[near.clone()].contains(&false);
+        let by_speed = self.places.by_speed;
+        let of_maps = if !by_speed && accuracy < 1e-5 { OF_MAPS } else { 1.0 };
+        let record = |at: usize| {
+            let near = self.places.near(at);
+            let clear = accuracy >= 1e-5 && near.iter().all(|&at| self.clear[at]);
             let calm = clear || setting.end == End::Passed;
             let competing = if calm { 1.0 } else { OF_COMPETING };
-            let margin = competing * of_maps * MARGIN[usize::from(self.by_speed)];
-            let known = shots[near.clone()].iter().flatten();
+            let margin = competing * of_maps * MARGIN;
+            let known = near.iter().filter_map(|&at| shots[at].as_ref());
             let usual = quantile(known.map(|shot| shot.conditioning.interpolation).collect(), 0.5);
-            let errors = same(&shots[near.clone()], &self.exact[near]);
+            let errors = near.iter().filter_map(|&at| same(at));
             let smooth =
-                |(shot, _): &&(Shot, f64)| kink(shot.conditioning.interpolation, usual) <= rest;
-            let errors = errors.iter().filter(smooth);
-            let errors = errors.map(|(shot, error)| error / shot.conditioning.forces);
+                |(shot, _): &(&Shot, f64)| kink(shot.conditioning.interpolation, usual) <= rest;
+            let errors =
+                errors.filter(smooth).map(|(shot, error)| error / shot.conditioning.forces);
             let error = margin * errors.reduce(f64::max).unwrap_or(f64::INFINITY);
-            let speed_m_s = speed_m_s(self.plans[at]);
-            Record { speed_m_s, error, margin, usual, serves: true }
+            Record { error, margin, usual, serves: true }
         };
-        let heights =
-            pairs(shots, &self.exact).filter(|(shot, exact)| shot.has_peaks_of(exact, SAME_PEAK));
-        let heights = heights.map(|(shot, exact)| shot.peaks_change(exact));
+        let heights = pairs(shots, &self.exact)
+            .filter(|(shot, (exact, _))| shot.has_peaks_of(exact, SAME_PEAK));
+        let heights = heights.map(|(shot, (exact, _))| shot.peaks_change(exact));
         Tier {
             setting: *setting,
-            records: self.near().enumerate().map(record).collect(),
+            places: Arc::clone(&self.places),
+            twice: accuracy < LEAST_OF_SCATTERED && (!by_speed || self.clear.contains(&false)),
+            records: (0..shots.len()).map(record).collect(),
             height_error: OF_HEIGHTS * heights.fold(rest, f64::max),
         }
     }
@@ -514,7 +517,7 @@ impl<'a> Sample<'a> {
     fn sooner(&self, rest: &[f64], tried: &mut Vec<Tried>, least_share: f64) -> Option<Trial> {
         let end = self.halved.last().map_or(End::Reflected, |(setting, _)| setting.end);
         // Steps too long for strong losses make motion that never ends.
-        let durations_s = self.exact.iter().flatten().map(|shot| shot.duration_s);
+        let durations_s = self.exact.iter().flatten().map(|(shot, _)| shot.duration_s);
         let longest_s = LONGEST * durations_s.fold(0.0, f64::max);
         let mut best: Option<Trial> = None;
         // The longest step worth trying, of each kind of setting.
@@ -560,23 +563,16 @@ struct Trial {
     excess: f64,
 }
 
-/// Shots that both of two computations have.
-fn pairs<'a>(
+/// What both of two computations have.
+fn pairs<'a, T>(
     one: &'a [Option<Shot>],
-    other: &'a [Option<Shot>],
-) -> impl Iterator<Item = (&'a Shot, &'a Shot)> {
+    other: &'a [Option<T>],
+) -> impl Iterator<Item = (&'a Shot, &'a T)> {
     one.iter().zip(other).filter_map(|(one, other)| Some((one.as_ref()?, other.as_ref()?)))
 }
 
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
-}
-
-fn speed_m_s(plan: &Plan) -> f64 {
-    match plan.chain.start {
-        Start::Striker { speed_m_s, .. } => speed_m_s,
-        _ => 0.0,
-    }
 }
 
 fn quantile(mut values: Vec<f64>, share: f64) -> f64 {

@@ -18,6 +18,7 @@
 pub mod accuracy;
 pub mod rig;
 
+mod alike;
 mod batch;
 mod calibration;
 mod describe;
