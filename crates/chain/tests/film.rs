@@ -11,7 +11,11 @@ use serde_json::Value;
 use std::sync::Arc;
 
 fn film(viscosity_pa_s: f64, pressure_viscosity_per_pa: f64) -> Arc<dyn Law> {
-    law(FilmEntrained { viscosity_pa_s, pressure_viscosity_per_pa, stiffness: None })
+    limited(viscosity_pa_s, pressure_viscosity_per_pa, f64::INFINITY)
+}
+
+fn limited(viscosity_pa_s: f64, pressure_viscosity_per_pa: f64, volume_m3: f64) -> Arc<dyn Law> {
+    law(FilmEntrained { viscosity_pa_s, pressure_viscosity_per_pa, volume_m3, stiffness: None })
 }
 
 fn film_of(case: &Value) -> Arc<dyn Law> {
