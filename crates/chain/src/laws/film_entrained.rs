@@ -85,7 +85,7 @@ impl Term<5> for FilmEntrained {
                 least: 0.0,
             },
         ],
-        validity: "beside elastic_hertz, in contacts that are pressed or touch before the shot, flooded or with ten \
+        validity: "beside elastic_hertz, in contacts that are pressed or touch before the shot, flooded or with three \
                    times the oil that they trap; \
                    Newtonian isothermal oil, overlaps of 1 to 12 µm of steel balls, 0.03 to 0.3 Pa s, α up to 20 1/GPa",
         reference: "Snoeijer2013",
@@ -228,7 +228,7 @@ struct Reach {
     radius: f64,
     /// Fresh film over u: β G^n √(R*/a).
     film: f64,
-    /// d ln (film over u)/d ln (a y) at constant a: of G^n and of s/√φ.
+    /// 3 d ln (film over u)/d ln u at constant a: n x G′/G, and of s/√φ.
     slope: f64,
     /// φ.
     share: f64,
