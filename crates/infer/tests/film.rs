@@ -8,6 +8,7 @@ use hertzchain_infer::{
     Model, Problem, Speeds, design, fit, ways,
 };
 use hertzchain_measure::signal::Estimate;
+use hertzchain_sim::Stop;
 
 /// A row short enough for a test: a film has the adaptive loop alone.
 const ROW: &str = "[materials.steel]\nyoung_modulus = \"213 GPa\"\npoisson_ratio = 0.3\n\
@@ -137,6 +138,25 @@ fn dry_rows_do_not_hide_a_misfit_of_the_wet_ones() {
 }
 
 #[test]
+fn a_starved_film_gives_its_volume_back() {
+    let limited = ROW.replace("[liquid]\n", "[liquid]\nvolume = \"1e-4 µl\"\n");
+    let experiment = Experiment::from_text("film.toml", &limited).unwrap();
+    let model = model(&experiment, &["volume"]).with_accuracy(1e-4);
+    // Some 2e-15 m³ are the film.
+    let exact = 4e-14;
+    let data = measured(&model, &[exact], &[(0.5, 0.0)]);
+    let mut parameters = model.numbers.parameters(&data.speeds_m_s());
+    assert!((parameters[0].start / 1e-13 - 1.0).abs() < 1e-9, "{parameters:?}");
+    (parameters[0].lower, parameters[0].upper) = (1e-14, 1e-12);
+    let problem = CurveProblem::new(model, data, parameters).unwrap();
+    let best =
+        fit(&problem, &Fitting { iterations: 4, tolerance: 1e-3, ..Fitting::default() }).unwrap();
+    let sd = Covariance::new(problem.parameters(), &best).sd[0];
+    println!("{:?} {sd:e} {exact:e}", best.point);
+    assert!((best.point[0] - exact).abs() < 0.5 * sd && sd < exact, "{:?} ± {sd:e}", best.point);
+}
+
+#[test]
 fn a_dry_curve_off_its_model_is_not_the_films_fault() {
     let (problem, found, chi_square) = gauge(&[0.08; 3], &many_rows(2.0)).film().unwrap();
     let both = Goodness::new(&problem, &found).chi_square.unwrap();
@@ -166,7 +186,7 @@ fn a_film_has_no_other_numbers_than_its_own() {
     };
     for name in ["speed_scale", "delay", "wet.K", "Y"] {
         let message = refused(&wet, &["viscosity", name]);
-        let expected = "is no number of a film: expected viscosity or pressure_viscosity";
+        let expected = "is no number of a film: expected viscosity, pressure_viscosity or volume";
         assert_eq!(message, format!("{name} {expected}"));
     }
     assert!(refused(&wet, &["viscosity:each"]).contains("do not depend on speed"));
@@ -187,7 +207,16 @@ fn a_design_says_what_would_tighten_a_films_viscosity() {
     let best = fit(&problem, &Fitting::default()).unwrap();
     let errors = ExpectedErrors::like(problem.data());
     let ways = ways(&experiment, &Choices::default()).unwrap();
+    let stop = Stop::default();
+    stop.clone().adopt();
     let candidates = problem.candidates(&best, &ways[..1], &[0.4, 0.8], &errors).unwrap();
+    let points = stop.done();
+    // What reads more from the same shots computes none.
+    let more = problem.candidates(&best, &ways[..3], &[0.4, 0.8], &errors).unwrap();
+    assert!(points >= 6 && stop.done() == 2 * points, "{points} {}", stop.done());
+    assert_eq!(more[..2], candidates);
+    let ratio = problem.candidates(&best, &ways[2..3], &[0.4, 0.8], &errors).unwrap();
+    assert_eq!(more[4..], ratio);
     let found = design(problem.parameters(), &best, &candidates, &[0], 1).unwrap();
     // Both data alone; a third time of the kind takes off a fifth.
     let (before, after) = (found.before[0], found.ranked[0].after[0]);

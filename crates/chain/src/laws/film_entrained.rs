@@ -304,9 +304,10 @@ impl EntrainedFilm {
         if unknown <= 0.0 || self.volume == f64::INFINITY {
             return reach;
         }
-        let (outer, overlap) = (self.outer(), root * root);
-        let swept = outer.swept_to(reach.radius, overlap);
-        let edge = Ring { radius: reach.radius, overlap, swept, ..outer };
+        let overlap = root * root;
+        let last = if self.advances { self.outer() } else { self.held(overlap) };
+        let swept = last.swept_to(reach.radius, overlap);
+        let edge = Ring { radius: reach.radius, overlap, swept, ..last };
         let [less, more] = [1.0, 1.0 + SLIGHT].map(|part| self.supply(part * unknown, &edge));
         let change = (more.film / less.film).ln() - 0.5 * (more.rim / less.rim).ln();
         let (share, film) = (less.rim, less.film);
