@@ -152,7 +152,6 @@ fn a_starved_film_gives_its_volume_back() {
     let best =
         fit(&problem, &Fitting { iterations: 4, tolerance: 1e-3, ..Fitting::default() }).unwrap();
     let sd = Covariance::new(problem.parameters(), &best).sd[0];
-    println!("{:?} {sd:e} {exact:e}", best.point);
     assert!((best.point[0] - exact).abs() < 0.5 * sd && sd < exact, "{:?} ± {sd:e}", best.point);
 }
 

@@ -186,39 +186,26 @@ impl Ring {
     }
 }
 
-/// What a limited volume leaves of a flooded contact.
-#[derive(Clone, Copy)]
-struct Supply {
-    /// φ, of the rim's force.
-    rim: f64,
-    /// s, of the fresh film.
-    film: f64,
-}
-
-impl Supply {
-    const FLOODED: Self = Self { rim: 1.0, film: 1.0 };
-
-    /// Of a film of a contact of radius a, `film` being β G^n y as if it were flooded, and `outside`
-    /// the oil around it, in units of a²/R* and of a⁴/R*; and D over J.
-    fn new(film: f64, outside: f64, scale: f64) -> Self {
-        // J = ∫ W²/(ξ h³) dξ from the meniscus on is 20.5 v^−0.2 near the edge and 35.0 v^−0.5 far away;
-        // between, within 4 %.
-        let root = outside.powf(0.08);
-        let lacking = scale * (root * root * J[0] + root.powi(5) * J[1]).powf(-1.25);
-        // Over the gap of Hertz the film takes oil too, on the area up to the meniscus, and w^2.5 + z w = 1
-        // for the width w of the wetted ring.
-        let ring = 1.6 * PI * 0.643 * outside.powf(0.4) + 1.6 * (PI * outside).sqrt();
-        let taken = film * ring / outside;
-        // The rim's overlap is larger by 1/√φ. Three passes are within 1 % of φ.
-        let mut rim = 1.0_f64;
-        for _ in 0..3 {
-            let wide = (1.0 + (taken / rim.sqrt()).powf(1.63)).powf(0.306);
-            rim = LEAST + (1.0 - LEAST) * (-lacking * wide / rim.cbrt() / (1.0 - LEAST)).exp();
-        }
-        // Half the ring at the edge in which the gap is less than the film.
-        let inlet = PI * film * (film / 1.2).cbrt().powi(2);
-        Self { rim, film: -(-outside * rim / inlet.max(f64::MIN_POSITIVE)).exp_m1() }
+/// φ and s, what a limited volume leaves of a flooded rim's force and fresh film: of a film β G^n y in
+/// units of a²/R*, oil around the contact in a⁴/R*, and D over J.
+fn starved(film: f64, outside: f64, scale: f64) -> (f64, f64) {
+    // J = ∫ W²/(ξ h³) dξ from the meniscus on is 20.5 v^−0.2 near the edge and 35.0 v^−0.5 far away;
+    // between, within 4 %.
+    let root = outside.powf(0.08);
+    let lacking = scale * (root * root * J[0] + root.powi(5) * J[1]).powf(-1.25);
+    // Over the gap of Hertz the film takes oil too, on the area up to the meniscus, and w^2.5 + z w = 1
+    // for the width w of the wetted ring.
+    let ring = 1.6 * PI * 0.643 * outside.powf(0.4) + 1.6 * (PI * outside).sqrt();
+    let taken = film * ring / outside;
+    // The rim's overlap is larger by 1/√φ.
+    let mut rim = 1.0_f64;
+    for _ in 0..3 {
+        let wide = (1.0 + (taken / rim.sqrt()).powf(1.63)).powf(0.306);
+        rim = LEAST + (1.0 - LEAST) * (-lacking * wide / rim.cbrt() / (1.0 - LEAST)).exp();
     }
+    // Half the ring at the edge in which the gap is less than the film.
+    let inlet = PI * film * (film / 1.2).cbrt().powi(2);
+    (rim, -(-outside * rim / inlet.max(f64::MIN_POSITIVE)).exp_m1())
 }
 
 /// The edge of a contact that grows.
@@ -283,10 +270,10 @@ impl EntrainedFilm {
     }
 
     /// What the volume leaves of a contact at an edge that is not yet a ring, or is one.
-    fn supply(&self, unknown: f64, edge: &Ring) -> Supply {
+    fn supply(&self, unknown: f64, edge: &Ring) -> (f64, f64) {
         let (r, a) = (self.radius, edge.radius);
         if unknown <= 0.0 || self.volume == f64::INFINITY || a < SLIGHT * r {
-            return Supply::FLOODED;
+            return (1.0, 1.0);
         }
         let rim = unknown * (a * r).sqrt();
         let thick = if self.inlet > 0.0 { self.thickening(rim.cbrt()).0 } else { 1.0 };
@@ -295,7 +282,7 @@ impl EntrainedFilm {
         let trapped = PI * (a * a * (0.5 * a * a / r - edge.overlap) + edge.swept);
         let outside = ((self.volume - trapped) * r / a.powi(4)).max(SLIGHT);
         let scale = 6.0 / PI * (STIFF * rim * r).cbrt().powi(2) / (a * a);
-        Supply::new(film, outside, scale * RIM[0].powf(-5.0 / 3.0) * thick.powf(-PRESSURE[1]))
+        starved(film, outside, scale * RIM[0].powf(-5.0 / 3.0) * thick.powf(-PRESSURE[1]))
     }
 
     /// Solves a² = R* (δ + fresh film) by Newton, from the film of the last step.
@@ -309,8 +296,8 @@ impl EntrainedFilm {
         let swept = last.swept_to(reach.radius, overlap);
         let edge = Ring { radius: reach.radius, overlap, swept, ..last };
         let [less, more] = [1.0, 1.0 + SLIGHT].map(|part| self.supply(part * unknown, &edge));
-        let change = (more.film / less.film).ln() - 0.5 * (more.rim / less.rim).ln();
-        let (share, film) = (less.rim, less.film);
+        let (share, film) = less;
+        let change = (more.1 / film).ln() - 0.5 * (more.0 / share).ln();
         reach = self.reach_of(unknown / share.sqrt(), root, film);
         Reach {
             share,
@@ -452,7 +439,7 @@ impl ContactState for EntrainedFilm {
         let [unknown, moved, _] = numbers_m;
         if !self.advances {
             let ring = self.held(contact.overlap);
-            let edge = (ring.radius, ring.push, self.supply(unknown, &ring).rim);
+            let edge = (ring.radius, ring.push, self.supply(unknown, &ring).0);
             let (force, rate) = self.pushed(unknown, contact, edge, None);
             return (force, [rate, 0.0, 0.0]);
         }
