@@ -138,24 +138,6 @@ fn dry_rows_do_not_hide_a_misfit_of_the_wet_ones() {
 }
 
 #[test]
-fn a_starved_film_gives_its_volume_back() {
-    let limited = ROW.replace("[liquid]\n", "[liquid]\nvolume = \"1e-4 µl\"\n");
-    let experiment = Experiment::from_text("film.toml", &limited).unwrap();
-    let model = model(&experiment, &["volume"]).with_accuracy(1e-4);
-    // Some 2e-15 m³ are the film.
-    let exact = 4e-14;
-    let data = measured(&model, &[exact], &[(0.5, 0.0)]);
-    let mut parameters = model.numbers.parameters(&data.speeds_m_s());
-    assert!((parameters[0].start / 1e-13 - 1.0).abs() < 1e-9, "{parameters:?}");
-    (parameters[0].lower, parameters[0].upper) = (1e-14, 1e-12);
-    let problem = CurveProblem::new(model, data, parameters).unwrap();
-    let best =
-        fit(&problem, &Fitting { iterations: 4, tolerance: 1e-3, ..Fitting::default() }).unwrap();
-    let sd = Covariance::new(problem.parameters(), &best).sd[0];
-    assert!((best.point[0] - exact).abs() < 0.5 * sd && sd < exact, "{:?} ± {sd:e}", best.point);
-}
-
-#[test]
 fn a_dry_curve_off_its_model_is_not_the_films_fault() {
     let (problem, found, chi_square) = gauge(&[0.08; 3], &many_rows(2.0)).film().unwrap();
     let both = Goodness::new(&problem, &found).chi_square.unwrap();
