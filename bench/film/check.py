@@ -3,6 +3,7 @@
 import sys
 
 import numpy as np
+from scipy.integrate import quad
 
 from contact import Barus, Contact, Grid, Roelands, collide, drive, graded_faces
 from law import CONSTANTS, FilmLaw
@@ -74,6 +75,27 @@ def stefan_and_the_flattened_sphere():
     y = flat**2 / (2 * RADIUS * gap)
     exact = 6 * np.pi * viscosity * RADIUS**2 * speed / gap * (1 + y + y**2)
     yield "flat disc and sphere: (6π η R² v/u)(1 + y + y²), y = a²/(2Ru)", sphere.force(), exact, 3e-4, "rings of a/400 at the kink of the gap"
+
+
+@check
+def oil_beyond_a_meniscus_bears_what_a_closed_form_says():
+    overlap, viscosity, speed, step = 6.7e-6, 0.1, 1e-3, 1e-6
+    edge = np.sqrt(RADIUS * overlap)
+    grid = Grid(graded_faces(1.3 * edge, 160, 60 * edge, 1.04), MODULUS)
+    # Displaced area over a² and gap over a²/R at r = x a.
+    area = lambda x: 2 * (x**2 * np.arccos(1 / x) - np.sqrt(x**2 - 1))
+    gap = lambda x: ((x**2 - 2) * np.arccos(1 / x) + np.sqrt(x**2 - 1)) / np.pi
+    for wanted in (2, 4):
+        inside = np.searchsorted(grid.faces, wanted * edge)
+        flooded = Contact(grid, RADIUS, viscosity).start(overlap)
+        volume = (flooded.m * grid.area)[:inside].sum()
+        limited = Contact(grid, RADIUS, viscosity).start(overlap, volume=volume)
+        for _ in range(30):
+            for contact in (flooded, limited):
+                contact.step(step, contact.overlap + speed * step)
+        missing = quad(lambda x: area(x) ** 2 / (x * gap(x) ** 3), grid.faces[inside] / edge, grid.faces[-1] / edge, limit=200)[0]
+        exact = 6 / np.pi * viscosity * speed * RADIUS**3 / edge**2 * missing
+        yield f"meniscus at {wanted} a", flooded.force() - limited.force(), exact, 0.05, "rings of a quarter of the gap; 30 µs of an inlet that still relaxes"
 
 
 @check

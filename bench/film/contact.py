@@ -123,8 +123,11 @@ class Contact:
         """½ ∫ p w dA: energy of both bodies."""
         return 0.5 * (self.grid.area * self.p) @ (self.grid.influence @ self.p)
 
-    def start(self, overlap, thickness=np.inf, trapped=0.0):
-        """Rest at an overlap (negative: separated) on a film of `trapped` in the contact, oil up to `thickness` outside."""
+    def start(self, overlap, thickness=np.inf, trapped=0.0, volume=np.inf):
+        """Rest at an overlap (negative: separated) on a film of `trapped` in the contact, oil up to `thickness` outside.
+
+        `volume` of oil fills the gap from the contact's edge outward; beyond it there is none.
+        """
         self.overlap = overlap
         self.p = np.zeros_like(self.p)
         self.m = np.full_like(self.p, trapped)
@@ -134,6 +137,9 @@ class Contact:
             self.step(1.0, self.overlap, still=True)
         self.m = np.minimum(self.gap(), np.maximum(thickness, trapped))
         self.m = np.maximum(self.m, 0.0)
+        if volume < np.inf:
+            inner = np.concatenate([[0.0], np.cumsum(self.m * self.grid.area)])
+            self.m = np.clip(volume - inner[:-1], 0.0, self.m * self.grid.area) / self.grid.area
         return self
 
     def grid_compliance(self):

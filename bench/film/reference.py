@@ -1,6 +1,6 @@
-"""Numbers by law.py and row.py for the tests of the Rust law: forces and loss of one contact along given motions, and rows.
+"""Numbers by law.py, row.py and contact.py for the tests of the Rust law: forces and loss of one contact along given motions, and rows.
 
-Writes reference.json. Both are of first order in time: values are extrapolated from a step and half of it.
+Writes reference.json. All are of first order in time: values are extrapolated from a step and half of it.
 """
 
 import json
@@ -8,6 +8,7 @@ import pathlib
 
 import numpy as np
 
+from contact import Barus, Contact, Grid, drive, graded_faces
 from law import FilmLaw
 from pulse import MODULUS, REDUCED_RADIUS, STIFFNESS
 from row import shot
@@ -23,6 +24,17 @@ CASES = [
     ("sine", 30.0, 1.5e-6, 80e-6, 200e-6, 0.119, 0.0),
     ("sine", 30.0, 1.5e-6, 80e-6, 200e-6, 0.058, 12e-9),
 ]
+
+
+# Amplitude in m, duration of a pulse in s, viscosity in Pa s, α in 1/Pa; 0.24 N. What a contact of these traps in m³.
+LIMITED = [
+    (1.5e-6, 94e-6, 0.048, 0.0, 6e-16),
+    (6.7e-6, 60e-6, 0.119, 0.0, 8e-15),
+    (1.5e-6, 94e-6, 0.0478, 16e-9, 1.9e-15),
+    (6.7e-6, 60e-6, 0.0478, 16e-9, 2.3e-14),
+]
+# Volumes over what is trapped; the first is flooded.
+VOLUMES = [np.inf, 1000.0, 100.0, 30.0, 10.0, 3.0, 1.0, 0.5]
 
 
 # Speed in m/s, viscosity in Pa s, α in 1/Pa of rows with 0.24 N.
@@ -55,6 +67,28 @@ def reference(case):
     return dict(zip(names, case)) | numbers
 
 
+def whole(amplitude, period, viscosity, alpha, volume, steps, rings=120):
+    """Forces in N at the samples and work in J by contact.py, with a volume of oil."""
+    static = (0.24 / STIFFNESS) ** (2 / 3)
+    edge = np.sqrt(REDUCED_RADIUS * (static + amplitude))
+    grid = Grid(graded_faces(1.25 * edge, rings, 8 * edge), MODULUS)
+    contact = Contact(grid, REDUCED_RADIUS, viscosity, Barus(alpha) if alpha else None).start(static, volume=volume)
+    times = np.linspace(0, period, steps + 1)
+    rows = drive(contact, times, static + motion("pulse", amplitude, period, times))
+    force, overlap = rows[:, 2], rows[:, 1]
+    return force[steps // SAMPLES :: steps // SAMPLES], np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(overlap))
+
+
+def limited(case, over):
+    """One pulse through a contact with a limited volume, and what came out of it."""
+    *numbers, trapped = case
+    volume = over * trapped
+    (coarse, lost), (fine, less) = (whole(*numbers, volume, steps) for steps in (20 * SAMPLES, 40 * SAMPLES))
+    names = ("amplitude_m", "duration_s", "viscosity_pa_s", "pressure_viscosity_per_pa")
+    found = {"force_n": [float(f"{value:.5g}") for value in 2 * fine - coarse], "loss_j": float(f"{2 * less - lost:.5g}")}
+    return dict(zip(names, numbers)) | {"over_trapped": over, "volume_m3": volume} | found
+
+
 def row(speed, viscosity, alpha):
     """Incident time of flight in s and peak force of the wall in N."""
     coarse, fine = (np.array(shot(speed, viscosity, 0.24, alpha=alpha, step=step, nodes=1200)) for step in (1.25e-8, 6.25e-9))
@@ -69,6 +103,10 @@ def lines(results):
 
 
 if __name__ == "__main__":
+    volumes = [limited(case, over) for case in LIMITED for over in VOLUMES]
+    # JSON has no infinity.
+    for case in volumes:
+        case |= {name: None for name in ("over_trapped", "volume_m3") if case[name] == np.inf}
     contacts, rows = lines(reference(case) for case in CASES), lines(row(*case) for case in ROWS)
     path = pathlib.Path(__file__).with_name("reference.json")
-    path.write_text(f'{{"contacts": {contacts},\n"rows": {rows}}}\n')
+    path.write_text(f'{{"contacts": {contacts},\n"rows": {rows},\n"limited": {lines(volumes)}}}\n')

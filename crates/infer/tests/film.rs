@@ -8,6 +8,7 @@ use hertzchain_infer::{
     Model, Problem, Speeds, design, fit, ways,
 };
 use hertzchain_measure::signal::Estimate;
+use hertzchain_sim::Stop;
 
 /// A row short enough for a test: a film has the adaptive loop alone.
 const ROW: &str = "[materials.steel]\nyoung_modulus = \"213 GPa\"\npoisson_ratio = 0.3\n\
@@ -166,7 +167,7 @@ fn a_film_has_no_other_numbers_than_its_own() {
     };
     for name in ["speed_scale", "delay", "wet.K", "Y"] {
         let message = refused(&wet, &["viscosity", name]);
-        let expected = "is no number of a film: expected viscosity or pressure_viscosity";
+        let expected = "is no number of a film: expected viscosity, pressure_viscosity or volume";
         assert_eq!(message, format!("{name} {expected}"));
     }
     assert!(refused(&wet, &["viscosity:each"]).contains("do not depend on speed"));
@@ -187,7 +188,16 @@ fn a_design_says_what_would_tighten_a_films_viscosity() {
     let best = fit(&problem, &Fitting::default()).unwrap();
     let errors = ExpectedErrors::like(problem.data());
     let ways = ways(&experiment, &Choices::default()).unwrap();
+    let stop = Stop::default();
+    stop.clone().adopt();
     let candidates = problem.candidates(&best, &ways[..1], &[0.4, 0.8], &errors).unwrap();
+    let points = stop.done();
+    // What reads more from the same shots computes none.
+    let more = problem.candidates(&best, &ways[..3], &[0.4, 0.8], &errors).unwrap();
+    assert!(points >= 6 && stop.done() == 2 * points, "{points} {}", stop.done());
+    assert_eq!(more[..2], candidates);
+    let ratio = problem.candidates(&best, &ways[2..3], &[0.4, 0.8], &errors).unwrap();
+    assert_eq!(more[4..], ratio);
     let found = design(problem.parameters(), &best, &candidates, &[0], 1).unwrap();
     // Both data alone; a third time of the kind takes off a fifth.
     let (before, after) = (found.before[0], found.ranked[0].after[0]);

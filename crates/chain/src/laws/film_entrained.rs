@@ -1,5 +1,6 @@
 use super::{Closed, ContactState, LawError, LawInfo, Nature, Parameter, Source, Term};
 use crate::material::BeadPair;
+use std::f64::consts::PI;
 
 /// What oil in a pressed contact adds to Hertz's force: a film that the growing edge entrains as the
 /// inlet of an elastohydrodynamic contact does [Snoeijer2013], and a squeezed rim.
@@ -16,6 +17,10 @@ use crate::material::BeadPair;
 /// c₊, c₋, β, κ, k, m, n are pure numbers, fitted to a transient elastohydrodynamic contact
 /// (`bench/film`), not to measurements.
 ///
+/// A volume V of oil ends at a meniscus. The oil beyond, which is missing, would bear 12 η δ̇ ∫ W²/(2πr h³) dr
+/// with Hertz's gap h and W = ∫ (1 − (2/π) arcsin(a/r)) 2πr dr: by its share D of the rim's force, κ becomes
+/// φ κ, φ about e^{−D}. Where the oil outside hardly fills the inlet, β becomes s β.
+///
 /// The law never creates energy: F δ̇ is the change of E* (∫_0^a (δ − δ_e)² ds + κ a y²) − (2/5) K δ^{5/2} plus
 /// a loss in the rim that is not negative. A contact starts dry, at rest, and again after each gap.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +29,8 @@ pub struct FilmEntrained {
     pub viscosity_pa_s: f64,
     /// Pressure–viscosity coefficient α in 1/Pa.
     pub pressure_viscosity_per_pa: f64,
+    /// Volume V in m³ of the oil in the contact; infinite where it is flooded.
+    pub volume_m3: f64,
     /// Stiffness K in N/m^{3/2} of the `elastic_hertz` beside it; `None`: from the materials.
     pub stiffness: Option<f64>,
 }
@@ -37,7 +44,12 @@ const STIFF: f64 = 2.41;
 /// k, m and n: pressure of an inlet, and how viscosity and film follow it.
 const PRESSURE: [f64; 3] = [1.262, -0.159, 0.6045];
 
-impl Term<4> for FilmEntrained {
+/// J near the edge and far away, to the power −0.8.
+const J: [f64; 2] = [0.08922, 0.05819];
+/// Least φ.
+const LEAST: f64 = 0.1;
+
+impl Term<5> for FilmEntrained {
     const INFO: LawInfo = LawInfo {
         name: "film_entrained",
         equation: "F = 2 E* (a δ − ∫ δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y),  \
@@ -59,6 +71,13 @@ impl Term<4> for FilmEntrained {
                 least: 0.0,
             },
             Parameter {
+                name: "volume",
+                unit: "m^3",
+                meaning: "volume V of the oil in the contact; flooded without one",
+                source: Source::Default(f64::INFINITY),
+                least: 0.0,
+            },
+            Parameter {
                 name: "stiffness",
                 unit: "N/m^1.5",
                 meaning: "stiffness K of the Hertz contact that the oil is in",
@@ -66,7 +85,8 @@ impl Term<4> for FilmEntrained {
                 least: 0.0,
             },
         ],
-        validity: "beside elastic_hertz, in flooded contacts that are pressed or touch before the shot; \
+        validity: "beside elastic_hertz, in contacts that are pressed or touch before the shot, flooded or with three \
+                   times the oil that they trap; \
                    Newtonian isothermal oil, overlaps of 1 to 12 µm of steel balls, 0.03 to 0.3 Pa s, α up to 20 1/GPa",
         reference: "Snoeijer2013",
         nature: Nature::WithState,
@@ -77,23 +97,29 @@ impl Term<4> for FilmEntrained {
         Self {
             viscosity_pa_s: values[0].unwrap_or(f64::NAN),
             pressure_viscosity_per_pa: values[1].unwrap_or(0.0),
-            stiffness: values[2],
+            volume_m3: values[2].unwrap_or(f64::INFINITY),
+            stiffness: values[3],
         }
     }
 
-    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 4], LawError> {
+    fn coefficients(&self, pair: &BeadPair) -> Result<[f64; 5], LawError> {
         let stiffness = self.stiffness.unwrap_or_else(|| pair.hertz_stiffness());
         let modulus = 0.75 * stiffness / pair.radius_m.sqrt();
-        Ok([modulus, pair.radius_m, self.viscosity_pa_s, self.pressure_viscosity_per_pa])
+        let (viscosity, alpha) = (self.viscosity_pa_s, self.pressure_viscosity_per_pa);
+        // 0 is flooded: coefficients are finite.
+        Ok(match self.volume_m3 > 0.0 {
+            true => [modulus, pair.radius_m, viscosity, alpha, self.volume_m3.recip()],
+            false => [modulus, pair.radius_m, 0.0, 0.0, 0.0],
+        })
     }
 
     /// At rest the contact is Hertz's: all force is that of the state.
-    fn force(_k: &[f64; 4], _contact: Closed) -> f64 {
+    fn force(_k: &[f64; 5], _contact: Closed) -> f64 {
         0.0
     }
 
-    fn state(k: &[f64; 4]) -> Option<Box<dyn ContactState>> {
-        let &[modulus, radius, viscosity, alpha] = k;
+    fn state(k: &[f64; 5]) -> Option<Box<dyn ContactState>> {
+        let &[modulus, radius, viscosity, alpha, per_volume] = k;
         // Without oil, or without elasticity, nothing is entrained.
         (viscosity > 0.0 && modulus > 0.0).then(|| -> Box<dyn ContactState> {
             let (speed, reach) = (viscosity / (2.0 * modulus), radius.powf(1.4));
@@ -104,6 +130,7 @@ impl Term<4> for FilmEntrained {
                 relaxing: (STIFF / (RIM[0] * reach)).powf(5.0 / 3.0) / speed,
                 drawing: RIM[1] * reach * speed.powf(0.6),
                 inlet,
+                volume: per_volume.recip(),
                 rings: vec![Ring::default()],
                 advances: true,
                 drawn: false,
@@ -125,6 +152,8 @@ struct Ring {
     push: f64,
     /// ∫∫ a dδ dδ up to there, in m³: half the energy over E*.
     work: f64,
+    /// ∫ a² dδ up to there, in m³.
+    swept: f64,
 }
 
 impl Ring {
@@ -145,13 +174,38 @@ impl Ring {
         };
         let push = (self.radius + more * mean) * past;
         let work = self.push + past * (0.5 * self.radius + more * mean * mean / (1.0 + mean));
-        Self {
-            radius: self.radius + more,
-            overlap,
-            push: self.push + push,
-            work: self.work + past * work,
-        }
+        let radius = self.radius + more;
+        let (push, work) = (self.push + push, self.work + past * work);
+        Self { radius, overlap, push, work, swept: self.swept_to(radius, overlap) }
     }
+
+    /// ∫ a² dδ up to an edge beyond, between which and this ring a rises evenly.
+    fn swept_to(self, a: f64, overlap: f64) -> f64 {
+        let mean = (self.radius * (self.radius + a) + a * a) / 3.0;
+        self.swept + mean * (overlap - self.overlap)
+    }
+}
+
+/// φ and s, what a limited volume leaves of a flooded rim's force and fresh film: of a film β G^n y in
+/// units of a²/R*, oil around the contact in a⁴/R*, and D over J.
+fn starved(film: f64, outside: f64, scale: f64) -> (f64, f64) {
+    // J = ∫ W²/(ξ h³) dξ from the meniscus on is 20.5 v^−0.2 near the edge and 35.0 v^−0.5 far away;
+    // between, within 4 %.
+    let root = outside.powf(0.08);
+    let lacking = scale * (root * root * J[0] + root.powi(5) * J[1]).powf(-1.25);
+    // Over the gap of Hertz the film takes oil too, on the area up to the meniscus, and w^2.5 + z w = 1
+    // for the width w of the wetted ring.
+    let ring = 1.6 * PI * 0.643 * outside.powf(0.4) + 1.6 * (PI * outside).sqrt();
+    let taken = film * ring / outside;
+    // The rim's overlap is larger by 1/√φ.
+    let mut rim = 1.0_f64;
+    for _ in 0..3 {
+        let wide = (1.0 + (taken / rim.sqrt()).powf(1.63)).powf(0.306);
+        rim = LEAST + (1.0 - LEAST) * (-lacking * wide / rim.cbrt() / (1.0 - LEAST)).exp();
+    }
+    // Half the ring at the edge in which the gap is less than the film.
+    let inlet = PI * film * (film / 1.2).cbrt().powi(2);
+    (rim, -(-outside * rim / inlet.max(f64::MIN_POSITIVE)).exp_m1())
 }
 
 /// The edge of a contact that grows.
@@ -161,8 +215,10 @@ struct Reach {
     radius: f64,
     /// Fresh film over u: β G^n √(R*/a).
     film: f64,
-    /// n x G′/G.
+    /// 3 d ln (film over u)/d ln u at constant a: n x G′/G, and of s/√φ.
     slope: f64,
+    /// φ.
+    share: f64,
     /// Cube root of a y, and G, where an oil thickens.
     of_rim: Option<(f64, f64)>,
 }
@@ -179,6 +235,8 @@ struct EntrainedFilm {
     drawing: f64,
     /// x over (a y)^{1/3}.
     inlet: f64,
+    /// V.
+    volume: f64,
     /// What the edge left, inner rings first; δ_e rises outward.
     rings: Vec<Ring>,
     /// Whether the edge advances at the start of the step; else it is held by what it left.
@@ -211,14 +269,52 @@ impl EntrainedFilm {
         (x / less, 1.0 - x * (1.0 - less) / less)
     }
 
-    /// Solves a² = R* (δ + β G^n u √(R*/a)) by Newton in √a, from the film of the last step.
+    /// What the volume leaves of a contact at an edge that is not yet a ring, or is one.
+    fn supply(&self, unknown: f64, edge: &Ring) -> (f64, f64) {
+        let (r, a) = (self.radius, edge.radius);
+        if unknown <= 0.0 || self.volume == f64::INFINITY || a < SLIGHT * r {
+            return (1.0, 1.0);
+        }
+        let rim = unknown * (a * r).sqrt();
+        let thick = if self.inlet > 0.0 { self.thickening(rim.cbrt()).0 } else { 1.0 };
+        let film = LEFT * thick.powf(PRESSURE[2]) * rim * r / a.powi(3);
+        // ∫ (s²/R* − δ_e) 2πs ds is what the contact has trapped.
+        let trapped = PI * (a * a * (0.5 * a * a / r - edge.overlap) + edge.swept);
+        let outside = ((self.volume - trapped) * r / a.powi(4)).max(SLIGHT);
+        let scale = 6.0 / PI * (STIFF * rim * r).cbrt().powi(2) / (a * a);
+        starved(film, outside, scale * RIM[0].powf(-5.0 / 3.0) * thick.powf(-PRESSURE[1]))
+    }
+
+    /// Solves a² = R* (δ + fresh film) by Newton, from the film of the last step.
     fn reach(&self, unknown: f64, root: f64) -> Reach {
+        let mut reach = self.reach_of(unknown, root, 1.0);
+        if unknown <= 0.0 || self.volume == f64::INFINITY {
+            return reach;
+        }
+        let overlap = root * root;
+        let last = if self.advances { self.outer() } else { self.held(overlap) };
+        let swept = last.swept_to(reach.radius, overlap);
+        let edge = Ring { radius: reach.radius, overlap, swept, ..last };
+        let [less, more] = [1.0, 1.0 + SLIGHT].map(|part| self.supply(part * unknown, &edge));
+        let (share, film) = less;
+        let change = (more.1 / film).ln() - 0.5 * (more.0 / share).ln();
+        reach = self.reach_of(unknown / share.sqrt(), root, film);
+        Reach {
+            share,
+            film: reach.film / share.sqrt(),
+            slope: reach.slope + 3.0 * change / SLIGHT,
+            ..reach
+        }
+    }
+
+    /// Solves a² = R* (δ + s β G^n u √(R*/a)) by Newton in √a.
+    fn reach_of(&self, unknown: f64, root: f64, left: f64) -> Reach {
         let root_radius = self.radius.sqrt();
         let dry = root_radius * root;
         if unknown <= 0.0 {
-            return Reach { radius: dry, ..Reach::default() };
+            return Reach { radius: dry, share: 1.0, ..Reach::default() };
         }
-        let (level, thin) = (dry * dry, LEFT * self.radius * root_radius);
+        let (level, thin) = (dry * dry, left * LEFT * self.radius * root_radius);
         let mut q = (level + self.radius * self.film * unknown).sqrt().sqrt();
         if q == 0.0 {
             q = (thin * unknown).powf(0.2);
@@ -241,7 +337,8 @@ impl EntrainedFilm {
             of_rim = of_rim.map(|(cube_root, thick)| (cube_root * (1.0 - step / (3.0 * q)), thick));
             // Convergence is quadratic: 1e-12 is left.
             if step.abs() <= 1e-6 * q {
-                return Reach { radius: q * q, film: film / (self.radius * q), slope, of_rim };
+                let film = film / (self.radius * q);
+                return Reach { radius: q * q, film, slope, share: 1.0, of_rim };
             }
         }
         Reach { radius: f64::NAN, film: f64::NAN, ..Reach::default() }
@@ -263,12 +360,12 @@ impl EntrainedFilm {
         inner.towards(self.rings.get(next), overlap)
     }
 
-    /// Force in N at a radius and ∫ a dδ, and the rate of u in m/s; `of_rim` as in [`Reach`].
+    /// Force in N at a radius, ∫ a dδ and φ, and the rate of u in m/s; `of_rim` as in [`Reach`].
     fn pushed(
         &self,
         unknown: f64,
         contact: Closed,
-        (a, push): (f64, f64),
+        (a, push, share): (f64, f64, f64),
         of_rim: Option<(f64, f64)>,
     ) -> (f64, f64) {
         let hertz = 2.0 / 3.0 * self.radius.sqrt() * contact.overlap * contact.root;
@@ -278,7 +375,7 @@ impl EntrainedFilm {
             return (force(rim.copysign(contact.rate)), 0.0);
         }
         // a y, below 0 only within a step that ends where it reaches 0.
-        let rim = unknown * (a * self.radius).sqrt();
+        let rim = unknown * (a * self.radius / share).sqrt();
         let cube_root = of_rim.map_or_else(|| rim.abs().cbrt(), |(cube_root, _)| cube_root);
         let relaxing = match self.inlet > 0.0 {
             true => {
@@ -288,12 +385,14 @@ impl EntrainedFilm {
             false => self.relaxing,
         };
         let given_way = relaxing * rim.abs() * cube_root * cube_root;
-        (force(STIFF * rim), (a / self.radius).sqrt() * (contact.rate - given_way.copysign(rim)))
+        let rate = (share * a / self.radius).sqrt() * (contact.rate - given_way.copysign(rim));
+        (force(STIFF * share * rim), rate)
     }
 
     /// Rate of a² = R* (δ + fresh film) over the sizes of its parts, −1 to 1.
     fn growth(&self, unknown: f64, contact: Closed, reach: &Reach) -> f64 {
-        let (_, rate) = self.pushed(unknown, contact, (reach.radius, 0.0), reach.of_rim);
+        let (_, rate) =
+            self.pushed(unknown, contact, (reach.radius, 0.0, reach.share), reach.of_rim);
         let fresh = reach.film * (1.0 + reach.slope / 3.0) * rate;
         (contact.rate + fresh) / (contact.rate.abs() + fresh.abs()).max(f64::MIN_POSITIVE)
     }
@@ -307,7 +406,8 @@ impl EntrainedFilm {
         let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0]);
         if was && reach.radius > outer.radius && overlap > outer.overlap {
             let (push, work) = (outer.push + moved * span, outer.work + worked * span * span);
-            self.rings.push(Ring { radius: reach.radius, overlap, push, work });
+            let (radius, swept) = (reach.radius, outer.swept_to(reach.radius, overlap));
+            self.rings.push(Ring { radius, overlap, push, work, swept });
             self.advances = grows;
         } else if was {
             // Rounding of a contact at rest.
@@ -330,7 +430,8 @@ impl ContactState for EntrainedFilm {
         let radius = (self.radius * overlap_m).sqrt();
         let push = 2.0 / 3.0 * radius * overlap_m;
         self.rings.truncate(1);
-        self.rings.push(Ring { radius, overlap: overlap_m, push, work: 0.4 * push * overlap_m });
+        let (work, swept) = (0.4 * push * overlap_m, 0.75 * radius * push);
+        self.rings.push(Ring { radius, overlap: overlap_m, push, work, swept });
         (self.advances, self.drawn, self.rate, self.film) = (true, false, 0.0, 0.0);
     }
 
@@ -338,12 +439,13 @@ impl ContactState for EntrainedFilm {
         let [unknown, moved, _] = numbers_m;
         if !self.advances {
             let ring = self.held(contact.overlap);
-            let (force, rate) = self.pushed(unknown, contact, (ring.radius, ring.push), None);
+            let edge = (ring.radius, ring.push, self.supply(unknown, &ring).0);
+            let (force, rate) = self.pushed(unknown, contact, edge, None);
             return (force, [rate, 0.0, 0.0]);
         }
         let (reach, span) = (self.reach(unknown, contact.root), SPAN * self.radius);
         let (a, push) = (reach.radius, self.outer().push + moved * span);
-        let (force, rate) = self.pushed(unknown, contact, (a, push), reach.of_rim);
+        let (force, rate) = self.pushed(unknown, contact, (a, push, reach.share), reach.of_rim);
         (force, [rate, a / span * contact.rate, push / (span * span) * contact.rate])
     }
 

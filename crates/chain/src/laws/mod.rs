@@ -53,7 +53,7 @@ pub static LAWS: &[Row] = &[
     row::<DampingTsuji, 1>(),
     row::<DampingLinear, 1>(),
     row::<DampingPower, 3>(),
-    row::<FilmEntrained, 4>(),
+    row::<FilmEntrained, 5>(),
     row::<film_drained::FilmDrained, 4>(),
     row::<capillary_bridge::CapillaryBridge, 3>(),
 ];

@@ -402,8 +402,8 @@ pub struct GaugeOptions {
     /// friction holds in a tapped row (near_end.force); fitted anew with every oil
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub own: Vec<String>,
-    /// Numbers of a film on the wet contacts (viscosity, pressure_viscosity) that are free in place of
-    /// K and A: the first at each speed, all over both curves together; no oils are compared
+    /// Numbers of a film on the wet contacts (viscosity, pressure_viscosity, volume) that are free in
+    /// place of K and A: the first at each speed, all over both curves together; no oils are compared
     #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with = "oils")]
     pub film: Vec<String>,
     /// Systematic errors that both curves share, as nuisance parameters: delay=0.2us, reflected_delay,

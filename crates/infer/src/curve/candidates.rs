@@ -197,10 +197,18 @@ impl CurveProblem {
         // Where the push is free, the fit's own stands in the place of any other.
         let is_free = |way: &&Way| way.kind != Kind::Preload || !numbers.is_free(PUSH);
         let mut all = Vec::new();
+        // Ways that read more or less from the same shots compute these once.
+        let mut latest: Option<(String, Model)> = None;
         for way in ways.iter().filter(is_free) {
-            let model = Model::new(&way.experiment, numbers.clone())?;
-            let model = model.with_accuracy(self.model().accuracy);
-            let found = of_way(model, fit, way, speeds_m_s, errors);
+            let text = way.experiment.canonical_text();
+            let model = match latest.take() {
+                Some((same, model)) if same == text => model,
+                _ => Model::new(&way.experiment, numbers.clone())?
+                    .with_accuracy(self.model().accuracy)
+                    .cached(),
+            };
+            let found = of_way(model.clone(), fit, way, speeds_m_s, errors);
+            latest = Some((text, model));
             all.extend(found.map_err(|error| InferError::from(error).about(&way.name))?);
         }
         Ok(all)

@@ -8,7 +8,9 @@ use hertzchain_sim::{
     Control, InstructionSet, Plan, Shot, StudyError, count_done, run_plans, stopped,
 };
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::fmt::Display;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What a model predicts at one speed, in the order of
 /// [`Observable::ALL`](crate::Observable::ALL); `None` where no such pulse is seen.
@@ -41,7 +43,11 @@ pub struct Model {
     pub accuracy: f64,
     /// Vector instructions of the ensemble.
     pub set: InstructionSet,
+    cache: Option<Cache>,
 }
+
+/// A model's curves by point, speeds and accuracy.
+type Cache = Arc<Mutex<HashMap<Vec<u64>, Result<Vec<Predicted>, ModelError>>>>;
 
 /// A shot to be computed, and what its signals are multiplied by.
 #[derive(Clone, Debug)]
@@ -72,7 +78,13 @@ impl Model {
             numbers,
             accuracy: Self::ACCURACY,
             set: InstructionSet::default(),
+            cache: None,
         })
+    }
+
+    /// The same model and its copies compute each curve once.
+    pub(super) fn cached(self) -> Self {
+        Self { cache: Some(Cache::default()), ..self }
     }
 
     /// The same model at another accuracy.
@@ -101,6 +113,26 @@ impl Model {
     ///
     /// A point that fails at one speed has no curve: its error says where and why.
     pub fn curves(
+        &self,
+        points: &[Vec<f64>],
+        speeds: &Speeds,
+    ) -> Vec<Result<Vec<Predicted>, ModelError>> {
+        let Some(cache) = &self.cache else {
+            return self.computed(points, speeds);
+        };
+        let at = speeds.at.iter().flat_map(|(row, speed)| [*row as u64, speed.to_bits()]);
+        let end: Vec<u64> = at.chain([speeds.rows as u64, self.accuracy.to_bits()]).collect();
+        let key = |point: &Vec<f64>| -> Vec<u64> {
+            point.iter().map(|value| value.to_bits()).chain(end.iter().copied()).collect()
+        };
+        let mut known = cache.lock().unwrap_or_else(PoisonError::into_inner);
+        let new = points.iter().filter(|point| !known.contains_key(&key(point)));
+        let new: Vec<Vec<f64>> = new.cloned().collect();
+        known.extend(new.iter().map(key).zip(self.computed(&new, speeds)));
+        points.iter().map(|point| known[&key(point)].clone()).collect()
+    }
+
+    fn computed(
         &self,
         points: &[Vec<f64>],
         speeds: &Speeds,

@@ -70,7 +70,8 @@ const PUSH: &str = "near_end.force";
 const CONTACT: [&str; 2] = ["wet.K", "wet.A"];
 
 /// Ends of the paths of a film's numbers.
-const FILM: [&str; 2] = ["film_entrained.viscosity", "film_entrained.pressure_viscosity"];
+const FILM: [&str; 3] =
+    ["film_entrained.viscosity", "film_entrained.pressure_viscosity", "film_entrained.volume"];
 
 impl Gauge {
     /// Fits the dry curve.
@@ -209,7 +210,7 @@ fn check_film(wet: &Experiment, names: &[String]) -> Result<(), InferError> {
         return Ok(());
     }
     if names.len() > CONTACT.len() {
-        return InferError::input("a film has two numbers: viscosity and pressure_viscosity");
+        return InferError::input("two numbers of a film at most can be free");
     }
     let mut laws = wet.sections().iter().filter(|section| section.wet).flat_map(|of| &of.laws);
     if !laws.any(|law| law.name() == "film_entrained") {
@@ -223,7 +224,7 @@ fn check_film(wet: &Experiment, names: &[String]) -> Result<(), InferError> {
         let path = number.path().unwrap_or_default();
         if !FILM.iter().any(|end| path.ends_with(end)) {
             return InferError::input(format!(
-                "{name} is no number of a film: expected viscosity or pressure_viscosity"
+                "{name} is no number of a film: expected viscosity, pressure_viscosity or volume"
             ));
         }
         if number.form != Form::Constant {
