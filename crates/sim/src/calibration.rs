@@ -7,10 +7,10 @@
 //! error from its own condition (`docs/explanation/numerics.md`).
 
 use crate::accuracy;
-use crate::alike::{Places, speed_m_s};
 use crate::engine::{Setting, fit_together, run_lanes, suits, systems};
 use crate::plan::Plan;
 use crate::shot::{Conditioning, Shot};
+use crate::similar::{Places, speed_m_s};
 use hertzchain_chain::ensemble::{End, Precision};
 use hertzchain_chain::observe::{Competing, Passage, Pulse};
 use hertzchain_chain::{InstructionSet, System};

@@ -18,7 +18,6 @@
 pub mod accuracy;
 pub mod rig;
 
-mod alike;
 mod batch;
 mod calibration;
 mod describe;
@@ -33,6 +32,7 @@ mod prepared;
 mod result;
 mod shard;
 mod shot;
+mod similar;
 mod speeds;
 mod stop;
 mod tracker;
