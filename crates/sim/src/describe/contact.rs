@@ -56,6 +56,7 @@ fn describe_law(group: &mut Group, law: &LawSpec, pairs: &[BeadPair]) {
         let name = format!("  {}", parameter.name);
         match (given, parameter.source) {
             (Some((_, value)), _) => group.number(name, *value, parameter.unit),
+            (None, Source::Default(f64::INFINITY)) => group.text(name, "without limit"),
             (None, Source::Default(value)) => group.number(name, value, parameter.unit),
             (None, _) => derived(group, law, name, parameter.name, pairs),
         }
