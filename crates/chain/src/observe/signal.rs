@@ -263,19 +263,22 @@ impl Signal {
         }
     }
 
-    /// Keeps maxima of one step, and its lowest sample since the last of them.
-    fn keep_inside(&mut self, stretch: &Stretch, maxima: Vec<Maximum>) {
-        let mut samples = (0..).zip(stretch.values).peekable();
+    /// Keeps maxima of one step, and its lowest sample or minimum since the last of them.
+    fn keep_inside(&mut self, stretch: &Stretch, maxima: Vec<Maximum>, minima: &[Maximum]) {
         let quarter_s = 0.25 * stretch.length_s;
+        let sample =
+            |(i, value)| Maximum { time_s: stretch.start_s + f64::from(i) * quarter_s, value };
+        let mut low: Vec<Maximum> = (0..).zip(stretch.values).map(sample).collect();
+        low.extend(minima);
+        low.sort_by(|one, two| one.time_s.total_cmp(&two.time_s));
+        let mut low = low.into_iter().peekable();
         for maximum in maxima {
-            let earlier =
-                |(i, _): &(i32, f64)| stretch.start_s + f64::from(*i) * quarter_s < maximum.time_s;
-            while let Some((_, value)) = samples.next_if(earlier) {
-                self.lowest = self.lowest.min(value);
+            while let Some(it) = low.next_if(|it| it.time_s < maximum.time_s) {
+                self.lowest = self.lowest.min(it.value);
             }
             self.keep(maximum);
         }
-        self.lowest = samples.fold(self.lowest, |lowest, (_, value)| lowest.min(value));
+        self.lowest = low.fold(self.lowest, |lowest, it| lowest.min(it.value));
     }
 
     /// The signal falls to 0: a rise until then ends in a maximum.
@@ -343,7 +346,8 @@ impl Signal {
                 self.lowest = self.lowest.min(dip);
             }
         }
-        self.keep_inside(stretch, inside);
+        let minima = add_at_reversals(piece, self.sensor, &mut inside);
+        self.keep_inside(stretch, inside, &minima);
         self.before = Some((stretch.end_s(), end, end_slope));
         let dip = JUMP * self.largest;
         self.rises_on = self.maxima.last().is_some_and(|last| self.lowest >= last.value - dip);
@@ -417,6 +421,64 @@ fn refined(piece: &Piece<'_>, sensor: Sensor, (low, high): (f64, f64)) -> Option
     // Fixed steps run across jumps, where values decide, not rates.
     let above = |theta: f64| maximum.value > piece.signal(sensor, theta);
     (falling(high) >= 0.0 || (above(low) && above(high))).then_some(maximum)
+}
+
+/// Adds maxima near reversals of contacts' rates that lie between samples, and gives the minima there:
+/// a force like a power of the rate between 1 and 2 has an infinite curvature at a reversal.
+fn add_at_reversals(piece: &Piece<'_>, sensor: Sensor, maxima: &mut Vec<Maximum>) -> Vec<Maximum> {
+    let mut minima = Vec::new();
+    for (at, released) in piece.reversals(sensor).into_iter().flatten() {
+        let (more, less) = extrema_around(piece, sensor, at, if released { 1.0 } else { -1.0 });
+        let is_new = |one: &Maximum, known: &[Maximum]| {
+            known.iter().all(|it| (it.time_s - one.time_s).abs() > 1e-9 * piece.step_s())
+        };
+        for maximum in more {
+            if is_new(&maximum, maxima) {
+                maxima.push(maximum);
+            }
+        }
+        minima.extend(less);
+    }
+    maxima.sort_by(|one, two| one.time_s.total_cmp(&two.time_s));
+    minima
+}
+
+/// Maxima and minima between two samples around a reversal at which the signal's rate has the sign
+/// given, if it has the other one on either side.
+fn extrema_around(
+    piece: &Piece<'_>,
+    sensor: Sensor,
+    at: f64,
+    sign: f64,
+) -> (Vec<Maximum>, Vec<Maximum>) {
+    let rate = |theta: f64| piece.signal_rate(sensor, theta);
+    let (mut maxima, mut minima) = (Vec::new(), Vec::new());
+    if sign * rate(at) <= 0.0 || !rate(at).is_finite() {
+        return (maxima, minima);
+    }
+    let before = (0.25 * (4.0 * at).floor()).min(0.75);
+    let ends = [before, before + 0.25];
+    let nearest = |end: f64| {
+        let theta = |halvings: i32| at + (end - at) * 0.5_f64.powi(halvings);
+        (0..SHARPEST).rev().map(theta).find(|theta| sign * rate(*theta) < 0.0)
+    };
+    let near = ends.map(nearest);
+    if near == [None; 2] {
+        return (maxima, minima);
+    }
+    let nodes = [Some(ends[0]), near[0], Some(at), near[1], Some(ends[1])];
+    let nodes: Vec<f64> = nodes.into_iter().flatten().collect();
+    for pair in nodes.windows(2) {
+        let rises = [rate(pair[0]) > 0.0, rate(pair[1]) > 0.0];
+        if rises[0] == rises[1] {
+            continue;
+        }
+        let falling = |theta: f64| if rises[0] { -rate(theta) } else { rate(theta) };
+        let theta = bracketed_root(falling, pair[0], pair[1], 1e-12);
+        let one = Maximum { time_s: piece.time_s(theta), value: piece.signal(sensor, theta) };
+        if rises[0] { maxima.push(one) } else { minima.push(one) }
+    }
+    (maxima, minima)
 }
 
 /// By how much a signal first differs from its value at the start of a step, if by more than a floor.

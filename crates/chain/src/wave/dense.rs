@@ -159,11 +159,20 @@ impl Piece<'_> {
     /// Where in the step each contact that a sensor shows begins to be released: some laws' forces
     /// fall there with an infinite slope in rate.
     pub(crate) fn sharp_falls(&self, sensor: Sensor) -> [Option<f64>; 3] {
+        self.reversals(sensor)
+            .map(|reversal| reversal.filter(|(_, released)| *released).map(|it| it.0))
+    }
+
+    /// Where in the step the rate of each contact that a sensor shows changes sign, and whether it is
+    /// released from then on.
+    pub(crate) fn reversals(&self, sensor: Sensor) -> [Option<(f64, bool)>; 3] {
         self.closed_contacts(sensor).map(|contact| {
             let contact = contact?;
-            let approach = |theta: f64| -self.overlap(contact, theta).1;
-            let turns = approach(0.0) < 0.0 && approach(1.0) > 0.0;
-            turns.then(|| bracketed_root(approach, 0.0, 1.0, 1e-13))
+            let rate = |theta: f64| self.overlap(contact, theta).1;
+            let released = rate(0.0) > 0.0;
+            let turns = released != (rate(1.0) > 0.0);
+            let rising = |theta: f64| if released { -rate(theta) } else { rate(theta) };
+            turns.then(|| (bracketed_root(rising, 0.0, 1.0, 1e-13), released))
         })
     }
 

@@ -22,7 +22,11 @@ fn a_maximum_that_two_steps_find_is_one_and_two_with_a_dip_are_two() {
         let stretch = Stretch { start_s: 0.0, length_s: 1.0, values };
         let mut signal = Signal { largest: 1.0, ..Signal::new(Sensor::Contact(0)) };
         let maximum = |(time_s, value): (f64, f64)| Maximum { time_s, value };
-        signal.keep_inside(&stretch, [(0.1, heights[0]), (0.9, heights[1])].map(maximum).into());
+        signal.keep_inside(
+            &stretch,
+            [(0.1, heights[0]), (0.9, heights[1])].map(maximum).into(),
+            &[],
+        );
         signal.maxima.iter().map(|it| it.time_s).collect::<Vec<_>>()
     };
     assert_eq!(kept([0.0, 0.9, 0.9, 0.95, 0.5], [0.9, 1.0]), [0.9]);
