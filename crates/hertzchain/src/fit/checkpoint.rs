@@ -121,7 +121,7 @@ pub const CHAIN: &str = "chain.json";
 /// that is broken off or killed goes on with `--resume`.
 pub(super) struct Saving<'a> {
     folder: Option<&'a Path>,
-    saved: Instant,
+    saved: Option<Instant>,
     most_steps: u64,
 }
 
@@ -132,7 +132,7 @@ impl<'a> Saving<'a> {
     pub(super) fn new(arguments: &'a Arguments) -> Self {
         Self {
             folder: arguments.out.as_deref(),
-            saved: Instant::now(),
+            saved: None,
             most_steps: arguments.steps,
         }
     }
@@ -149,12 +149,12 @@ impl<'a> Saving<'a> {
         let Some(folder) = self.folder else {
             return Ok(());
         };
-        if self.saved.elapsed() < SAVE_EVERY {
+        if self.saved.is_some_and(|saved| saved.elapsed() < SAVE_EVERY) {
             return Ok(());
         }
         write(folder, CHAIN, &saved(chain)?)?;
         // From the end of writing: a long chain takes its time.
-        self.saved = Instant::now();
+        self.saved = Some(Instant::now());
         Ok(())
     }
 }

@@ -13,6 +13,8 @@ const DPI: f64 = 300.0;
 #[derive(Debug)]
 pub(crate) struct Folder {
     files: Files,
+    /// Names that no file had when the folder was opened: one that has it now is this run's own.
+    free: Vec<String>,
     /// Whether files of earlier runs may be replaced.
     replace: bool,
 }
@@ -32,7 +34,8 @@ impl Folder {
             |error| Failure::User(format!("cannot write into {}: {error}", path.display()));
         let free = |name: &&str| require_free(&path.join(name), "--out", replace);
         names.iter().try_for_each(free)?;
-        Ok(Self { files: Files::within(path).map_err(refused)?, replace })
+        let free = names.iter().map(|&name| name.to_owned()).collect();
+        Ok(Self { files: Files::within(path).map_err(refused)?, free, replace })
     }
 
     /// Writes a file that gets its name with all others.
@@ -46,7 +49,8 @@ impl Folder {
         name: &str,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        require_free(&self.path().join(name), "--out", self.replace)?;
+        let own = self.free.iter().any(|free| free == name);
+        require_free(&self.path().join(name), "--out", self.replace || own)?;
         let written = self.files.write(name, write);
         written.map_err(|error| self.unwritable(name, &error))
     }
