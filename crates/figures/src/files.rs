@@ -30,7 +30,6 @@ pub enum FigureError {
     Encode,
 }
 
-/// Longest side of a picture in pixels.
 const LARGEST: f64 = 30_000.0;
 
 /// Renders a page of the given size on white paper.
@@ -160,7 +159,6 @@ pub(crate) fn pdf(canvas: &Canvas, (width, height): (f64, f64)) -> Vec<u8> {
     page.file((width, height))
 }
 
-/// Content and resources of the page.
 #[derive(Default)]
 struct Page {
     content: String,

@@ -91,7 +91,7 @@ fn path(data: &PathData, paint: &Paint, decimals: usize) -> String {
 
 /// A text as text, or as a group with its outlines.
 fn element(text: &PlacedText, count: usize, outlines: bool) -> String {
-    let (label, colour) = (escape(text.line.plain()), text.colour);
+    let (label, colour) = (escape(&text.line.plain), text.colour);
     if outlines {
         let drawn = path(&text.outlines(), &Paint::fill(colour), 3);
         return format!("<g id=\"t{count}\" aria-label=\"{label}\">{drawn}</g>\n");
