@@ -40,7 +40,6 @@ pub fn captions(figures: &[(&str, Figure)]) -> String {
     })
 }
 
-/// Name of a case in legends.
 fn label(case: &str) -> &str {
     match case {
         "pump" => "pump oil DS19",
@@ -52,14 +51,12 @@ fn label(case: &str) -> &str {
     }
 }
 
-/// Times or forces in another unit.
 fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     values.iter().map(|value| value * factor).collect()
 }
 
 const US: f64 = 1e6;
 
-/// Names and symbols of the three pulses.
 const PULSES: [(&str, Marker, Colour); 3] = [
     ("bead 7, incident", Marker::Circle, Colour::BLUE),
     ("wall", Marker::Square, Colour::VERMILION),
@@ -179,7 +176,6 @@ fn dry(curve: &Curve, branch: TofBranch, marker: Marker, colour: Colour) -> Seri
         .y_error(&errors)
 }
 
-/// Three ratios against speed with a line at 1.
 fn ratios(evidence: &Evidence) -> Figure {
     let ratio = r"$\mathrm{ToF}_{\mathrm{wet}} / \mathrm{ToF}_{\mathrm{dry}}$, incident";
     let empty = Chart::new("Striker speed $v_0$ (m/s)", ratio).h_line(1.0, "");
