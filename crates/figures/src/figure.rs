@@ -1,7 +1,7 @@
 //! A figure: panels in a grid, as SVG, PNG or PDF.
 
 use crate::chart::{Chart, Prepared, SMALL, x_scale};
-use crate::draw::{self, Canvas, Colour, Margins, PT_PER_MM, Point, Rect};
+use crate::draw::{Canvas, Colour, Margins, PT_PER_MM, Point, Rect};
 use crate::files::{self, FigureError};
 use crate::matrix::VerdictMatrix;
 use crate::rig::RigDrawing;
@@ -163,7 +163,7 @@ impl Figure {
 
     fn written(&self, outlines: bool) -> String {
         let size = (self.width_mm, self.height_mm);
-        draw::svg(&self.drawn(), size, (&self.title, &self.caption), outlines)
+        files::svg(&self.drawn(), size, (&self.title, &self.caption), outlines)
     }
 
     /// The picture as PNG at a resolution in dots per inch; journals ask for 300.

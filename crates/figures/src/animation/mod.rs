@@ -67,7 +67,7 @@ impl Animation {
 
     /// The page.
     pub fn html(&self) -> String {
-        let title = crate::draw::escape(&self.title);
+        let title = crate::files::escape(&self.title);
         let script = SCRIPT.replace("\"@DATA@\"", &self.data());
         // Parts are not searched again: a title may have any text.
         let (before, after) = PAGE.split_once("@SCRIPT@").unwrap_or((PAGE, ""));

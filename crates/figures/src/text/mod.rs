@@ -9,7 +9,8 @@
 mod font;
 mod markup;
 
-use crate::draw::{Canvas, Colour, Item, PathData, PlacedText, Point, escape};
+use crate::draw::{Canvas, Colour, Item, PathData, PlacedText, Point};
+use crate::files::escape;
 use font::{Face, Glyph, UNITS_PER_EM, width};
 use markup::{Script, TextRun, parse};
 

@@ -30,7 +30,7 @@ fn units_are_those_asked_for() {
 fn a_title_that_looks_like_a_part_of_the_page_stays_a_title() {
     let title = "@SCRIPT@ and @TITLE@ and \"@DATA@\"";
     let page = Animation { title: title.into(), ..moving(2, 3) }.html();
-    let shown = crate::draw::escape(title);
+    let shown = crate::files::escape(title);
     assert_eq!(page.matches(&shown).count(), 2, "{page}");
     assert_eq!(page.matches("const data =").count(), 1);
 }
