@@ -1,7 +1,7 @@
 //! A figure: panels in a grid, as SVG, PNG or PDF.
 
 use crate::chart::{Chart, Prepared, SMALL, x_scale};
-use crate::draw::{self, Canvas, Colour, Margins, PT_PER_MM, Point, Rect};
+use crate::draw::{Canvas, Colour, Margins, PT_PER_MM, Point, Rect};
 use crate::files::{self, FigureError};
 use crate::matrix::VerdictMatrix;
 use crate::rig::RigDrawing;
@@ -163,7 +163,7 @@ impl Figure {
 
     fn written(&self, outlines: bool) -> String {
         let size = (self.width_mm, self.height_mm);
-        draw::svg(&self.drawn(), size, (&self.title, &self.caption), outlines)
+        files::svg(&self.drawn(), size, (&self.title, &self.caption), outlines)
     }
 
     /// The picture as PNG at a resolution in dots per inch; journals ask for 300.
@@ -191,7 +191,7 @@ impl Figure {
             let frame = grid.frame(i);
             self.heading(&mut canvas, panel, i, &frame, &grid);
             match panel {
-                Panel::Chart(chart) => grid.prepared(chart).draw(&mut canvas, &frame),
+                Panel::Chart(chart) => Prepared::new(chart, grid.frame).draw(&mut canvas, &frame),
                 Panel::Matrix(matrix) => matrix.draw(&mut canvas, &frame),
                 Panel::Rig(rig) => rig.draw(&mut canvas, &frame),
                 Panel::Empty => {}
@@ -294,7 +294,7 @@ impl PanelGrid {
     fn measure(&mut self, panels: &[Panel], letters: bool) {
         for (i, panel) in panels.iter().enumerate() {
             let mut side = match panel {
-                Panel::Chart(chart) => self.prepared(chart).margins(),
+                Panel::Chart(chart) => Prepared::new(chart, self.frame).margins(),
                 _ => Margins::default(),
             };
             if letters || !panel.title().is_empty() {
@@ -304,11 +304,6 @@ impl PanelGrid {
             self.across[column] = self.across[column].union(side);
             self.down[row] = self.down[row].union(side);
         }
-    }
-
-    /// A chart for a frame of this size.
-    fn prepared<'a>(&self, chart: &'a Chart) -> Prepared<'a> {
-        Prepared::new(chart, self.frame)
     }
 
     fn fit(&mut self, page: (f64, f64)) {

@@ -53,7 +53,6 @@ impl HeatMap {
         }
     }
 
-    /// Lowest and highest value of the colour bar.
     fn range(&self) -> (f64, f64) {
         let asked = self.limits.filter(|(a, b)| a.is_finite() && b.is_finite() && a < b);
         asked.unwrap_or_else(|| self.data_range())
@@ -74,9 +73,7 @@ impl HeatMap {
             (lo, hi)
         }
     }
-}
 
-impl HeatMap {
     fn scale(&self) -> Scale {
         let (lo, hi) = self.range();
         Scale { lo, hi, log: false }
@@ -108,7 +105,7 @@ impl HeatMap {
         let shades = Raster { width: 1, height: 256, palette, pixels: (0..=255).collect() };
         canvas.items.push(Item::Image(bar, shades));
         let (found, scale, ink) = (self.bar_ticks(bar.height()), self.scale(), Colour::BLACK);
-        let mut path = PathData::new();
+        let mut path = PathData::default();
         path.rect(&bar);
         for tick in &found.major {
             let y = bar.y1 - scale.share(tick.value).unwrap_or(0.0) * bar.height();

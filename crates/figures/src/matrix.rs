@@ -201,7 +201,7 @@ impl MatrixLayout {
 
     /// Returns where the last row ends.
     fn draw_rows(&self, canvas: &mut Canvas, matrix: &VerdictMatrix) -> f64 {
-        let (mut y, mut rules) = (self.header, PathData::new());
+        let (mut y, mut rules) = (self.header, PathData::default());
         let right = self.labels + self.cell * self.headers.len() as f64;
         for (row, (_, cells)) in matrix.rows.iter().enumerate() {
             let height = row_height(&self.claims[row]);
@@ -269,10 +269,10 @@ fn draw_symbol(canvas: &mut Canvas, verdict: ClaimVerdict, cell: &Rect) {
     match verdict {
         ClaimVerdict::Holds => {
             let tick = [at(-0.9, 0.05), at(-0.25, 0.75), at(0.95, -0.8)];
-            canvas.path(PathData::new().polyline(&tick), &white);
+            canvas.path(PathData::default().polyline(&tick), &white);
         }
         ClaimVerdict::Fails => {
-            let mut cross = PathData::new();
+            let mut cross = PathData::default();
             cross.segment(at(-0.75, -0.75), at(0.75, 0.75));
             cross.segment(at(-0.75, 0.75), at(0.75, -0.75));
             canvas.path(&cross, &white);
@@ -288,7 +288,7 @@ fn draw_symbol(canvas: &mut Canvas, verdict: ClaimVerdict, cell: &Rect) {
 fn draw_half_circle(canvas: &mut Canvas, c: Point, r: f64) {
     let ink = Colour::grey(60);
     canvas.circle(c, r, &Paint::line(ink, 0.25 * r));
-    canvas.path(PathData::new().left_half_circle(c, r), &Paint::fill(ink));
+    canvas.path(PathData::default().left_half_circle(c, r), &Paint::fill(ink));
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A drawing of the apparatus, as wide as one column: parts have numbers, and a key below names
 //! them.
 
-use crate::draw::{Canvas, Colour, PT_PER_MM, Paint, PathData, Point, Rect};
+use crate::draw::{Canvas, Colour, PT_PER_MM, Paint, PathData, Point, Rect, Segment};
 use crate::figure::{Figure, SINGLE_COLUMN_MM};
 use crate::text::{Anchor, LEAST_SIZE, TextLine, wrap};
 
@@ -142,7 +142,6 @@ impl RigDrawing {
         (LEADING - ROOF, floor + LEADING * (lines.len() + 1) as f64 + 3.0)
     }
 
-    /// The sensor bead if it is in the row.
     fn sensor(&self) -> Option<usize> {
         self.sensor_bead.filter(|n| (1..=self.beads).contains(n))
     }
@@ -152,7 +151,6 @@ impl RigDrawing {
         self.wet_contacts.is_some_and(holds)
     }
 
-    /// Width of the half-bead in diameters.
     fn half_bead(&self) -> f64 {
         if self.far_end == RigEnd::HalfBead { 0.5 } else { 0.0 }
     }
@@ -281,7 +279,6 @@ impl<'a> Drawing<'a> {
         0.5 * self.diameter
     }
 
-    /// Centre of a bead if it is drawn.
     fn bead(&self, number: usize) -> Option<f64> {
         let found = self.beads.iter().find(|(n, _)| *n == number);
         found.map(|(_, x)| *x)
@@ -302,7 +299,7 @@ impl<'a> Drawing<'a> {
         let open = sum(&[(self.rig.far_end == RigEnd::Open, 8.0)]);
         let length = self.face + open - self.left;
         block(canvas, (self.left, top), (length, 4.5), BODY);
-        let mut holes = PathData::new();
+        let mut holes = PathData::default();
         for i in 0..(length / 7.0) as u32 {
             let x = self.left + 4.0 + 7.0 * f64::from(i);
             holes.segment(Point::new(x, top + 1.2), Point::new(x, top + 3.3));
@@ -407,7 +404,7 @@ impl<'a> Drawing<'a> {
         let (rig, r) = (self.rig, self.radius());
         if rig.far_end == RigEnd::HalfBead {
             let (x, radius) = (self.end + r, r - 0.25);
-            let mut half = PathData::new();
+            let mut half = PathData::default();
             half.left_half_circle(Point::new(x, 0.0), radius);
             canvas.path(&half, &Paint::fill(STEEL).outlined(INK, 0.5));
             label(labels, (self.end + 0.45 * r, 0.5 * r), false, "half-bead");
@@ -494,7 +491,7 @@ fn block(canvas: &mut Canvas, (x, y): (f64, f64), (width, height): (f64, f64), c
 
 fn polyline(canvas: &mut Canvas, points: &[(f64, f64)], paint: &Paint) {
     let points: Vec<Point> = points.iter().map(|(x, y)| Point::new(*x, *y)).collect();
-    canvas.path(PathData::new().polyline(&points), paint);
+    canvas.path(PathData::default().polyline(&points), paint);
 }
 
 fn draw_bead(canvas: &mut Canvas, centre: Point, radius: f64) {
@@ -506,10 +503,14 @@ fn draw_oil(canvas: &mut Canvas, x: f64, radius: f64) {
     let half_height = 0.62 * radius;
     let wetted = radius - (radius * radius - half_height * half_height).sqrt();
     let (at, waist) = (|dx, y| Point::new(x + dx, y), 0.55 * half_height);
-    let mut path = PathData::new();
-    path.move_to(at(-wetted, -half_height)).quad_to(at(0.0, -waist), at(wetted, -half_height));
-    path.line_to(at(wetted, half_height)).quad_to(at(0.0, waist), at(-wetted, half_height));
-    canvas.path(path.close(), &Paint::fill(OIL));
+    let path = PathData(vec![
+        Segment::Move(at(-wetted, -half_height)),
+        Segment::Quad(at(0.0, -waist), at(wetted, -half_height)),
+        Segment::Line(at(wetted, half_height)),
+        Segment::Quad(at(0.0, waist), at(-wetted, half_height)),
+        Segment::Close,
+    ]);
+    canvas.path(&path, &Paint::fill(OIL));
 }
 
 fn draw_arrow(canvas: &mut Canvas, from: Point, length: f64) {
@@ -521,7 +522,7 @@ fn draw_arrow(canvas: &mut Canvas, from: Point, length: f64) {
     );
     let corners = [(tip, 0.0), (tip - 4.2, -2.2), (tip - 4.2, 2.2)];
     let corners = corners.map(|(x, dy)| Point::new(x, from.y + dy));
-    canvas.path(PathData::new().polygon(&corners), &Paint::fill(Colour::VERMILION));
+    canvas.path(PathData::default().polygon(&corners), &Paint::fill(Colour::VERMILION));
 }
 
 /// Runs of neighbouring beads to draw if there is room for `capacity` beads: all of them, or

@@ -67,7 +67,7 @@ impl Animation {
 
     /// The page.
     pub fn html(&self) -> String {
-        let title = crate::draw::escape(&self.title);
+        let title = crate::files::escape(&self.title);
         let script = SCRIPT.replace("\"@DATA@\"", &self.data());
         // Parts are not searched again: a title may have any text.
         let (before, after) = PAGE.split_once("@SCRIPT@").unwrap_or((PAGE, ""));
@@ -75,7 +75,6 @@ impl Animation {
         before + &script + &after
     }
 
-    /// All numbers and names as JSON.
     fn data(&self) -> String {
         let stride = self.stride();
         let beads: Vec<usize> = (0..self.positions_m.len()).step_by(stride).collect();
@@ -87,11 +86,13 @@ impl Animation {
         let places: Vec<f64> = beads.iter().map(|b| self.start(*b)).collect();
         let (u, u_range) = quantised(&moved);
         let (f, f_range) = quantised(&forces);
+        let single = |values: &[f64]| base64(values.iter().map(|v| (*v as f32).to_le_bytes()));
+        let [u, f] = [u, f].map(|levels| base64(levels.iter().map(|level| level.to_le_bytes())));
         let data = json!({
             "beads": beads.len(), "stride": stride, "frames": grid.len(),
             "from": grid.first(), "to": grid.last(), "factor": factor,
-            "x0": base64_f32(&places), "radius": base64_f32(&radii),
-            "u": base64_u16(&u), "uRange": u_range, "f": base64_u16(&f), "fRange": f_range,
+            "x0": single(&places), "radius": single(&radii),
+            "u": u, "uRange": u_range, "f": f, "fRange": f_range,
             "contacts": forces.len(), "wet": self.wet_contacts, "marks": self.marks,
             "timeScale": self.time_unit.0, "timeUnit": self.time_unit.1,
             "forceUnit": self.force_unit, "firstContact": self.first_contact, "colours": colours(),
@@ -205,22 +206,11 @@ fn quantised(rows: &[Vec<f64>]) -> (Vec<u16>, (f64, f64)) {
     (all().map(level).collect(), (lo, hi))
 }
 
-/// Little-endian bytes in base64.
-fn base64_u16(values: &[u16]) -> String {
-    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-    STANDARD.encode(bytes)
-}
-
-/// Single precision, little-endian, in base64.
-fn base64_f32(values: &[f64]) -> String {
-    let bytes: Vec<u8> = values.iter().flat_map(|v| (*v as f32).to_le_bytes()).collect();
-    STANDARD.encode(bytes)
+/// Little-endian numbers in base64.
+fn base64<const N: usize>(numbers: impl Iterator<Item = [u8; N]>) -> String {
+    STANDARD.encode(numbers.flatten().collect::<Vec<u8>>())
 }
 
 #[cfg(test)]
 #[path = "tests/mod.rs"]
 mod tests;
-
-#[cfg(test)]
-#[path = "tests/encode.rs"]
-mod encode_tests;

@@ -2,7 +2,6 @@
 
 mod draw;
 mod layout;
-mod reference;
 mod strokes;
 
 pub(crate) use layout::{Plot, Prepared, x_scale};
@@ -21,7 +20,6 @@ pub(crate) struct Axis {
     pub(crate) unlabelled: bool,
 }
 
-/// A horizontal or vertical line at a value.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ReferenceLine {
     pub(crate) value: f64,
@@ -242,7 +240,6 @@ pub struct Series {
     pub(crate) y_error: (Vec<f64>, Vec<f64>),
 }
 
-/// Kind of strokes of a series.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum SeriesKind {
     Line,

@@ -111,7 +111,7 @@ pub(super) fn error_bars(plot: &Plot, series: &Series) -> Vec<(Point, [Option<Po
 }
 
 fn draw_error_bars(canvas: &mut Canvas, plot: &Plot, series: &Series, size: f64, colour: Colour) {
-    let mut path = PathData::new();
+    let mut path = PathData::default();
     for (centre, ends, cap) in error_bars(plot, series) {
         for end in ends.into_iter().flatten() {
             let Some((_, reached)) = clip_segment(&plot.frame, centre, end) else {
@@ -134,7 +134,7 @@ fn draw_error_bars(canvas: &mut Canvas, plot: &Plot, series: &Series, size: f64,
 pub(super) fn draw(canvas: &mut Canvas, chart: &Chart, plot: &Plot) {
     for (i, series) in chart.series.iter().enumerate() {
         if let SeriesKind::Band(upper) = &series.kind {
-            let mut path = PathData::new();
+            let mut path = PathData::default();
             for outline in band(plot, series, upper) {
                 path.polygon(&outline);
             }
@@ -144,7 +144,7 @@ pub(super) fn draw(canvas: &mut Canvas, chart: &Chart, plot: &Plot) {
     for (i, series) in chart.series.iter().enumerate() {
         let colour = chart.colour_of(i);
         if series.has_line() {
-            let mut path = PathData::new();
+            let mut path = PathData::default();
             for piece in pieces(plot, series) {
                 path.polyline(&piece);
             }
@@ -191,7 +191,6 @@ fn line_paint(chart: &Chart, index: usize) -> Paint {
     Paint::dashed(chart.colour_of(index), series.width, dash)
 }
 
-/// Marker of a series, if it has one.
 fn marker_of(series: &Series, index: usize) -> Option<Marker> {
     match series.kind {
         SeriesKind::Points(chosen) => Some(chosen.unwrap_or_else(|| Marker::of_index(index))),
@@ -200,9 +199,8 @@ fn marker_of(series: &Series, index: usize) -> Option<Marker> {
     }
 }
 
-/// Draws the same marker at many places.
 fn draw_markers(canvas: &mut Canvas, marker: Marker, at: &[Point], size: f64, colour: Colour) {
-    let mut path = PathData::new();
+    let mut path = PathData::default();
     for centre in at {
         outline(&mut path, marker, *centre, size);
     }

@@ -28,33 +28,8 @@ impl Segment {
 pub(crate) struct PathData(pub(crate) Vec<Segment>);
 
 impl PathData {
-    pub(crate) fn new() -> Self {
-        Self::default()
-    }
-
-    fn push(&mut self, segment: Segment) -> &mut Self {
-        self.0.push(segment);
-        self
-    }
-
-    pub(crate) fn move_to(&mut self, p: Point) -> &mut Self {
-        self.push(Segment::Move(p))
-    }
-
-    pub(crate) fn line_to(&mut self, p: Point) -> &mut Self {
-        self.push(Segment::Line(p))
-    }
-
-    pub(crate) fn quad_to(&mut self, c: Point, p: Point) -> &mut Self {
-        self.push(Segment::Quad(c, p))
-    }
-
-    pub(crate) fn close(&mut self) -> &mut Self {
-        self.push(Segment::Close)
-    }
-
     pub(crate) fn segment(&mut self, a: Point, b: Point) -> &mut Self {
-        self.move_to(a).line_to(b)
+        self.polyline(&[a, b])
     }
 
     pub(crate) fn rect(&mut self, r: &Rect) -> &mut Self {
@@ -63,7 +38,8 @@ impl PathData {
     }
 
     pub(crate) fn polygon(&mut self, corners: &[Point]) -> &mut Self {
-        self.polyline(corners).close()
+        self.polyline(corners).0.push(Segment::Close);
+        self
     }
 
     pub(crate) fn polyline(&mut self, points: &[Point]) -> &mut Self {
@@ -87,13 +63,14 @@ impl PathData {
         const REACH: f64 = 0.552_284_75;
         let at = |x: f64, y: f64| Point::new(centre.x + radius * x, centre.y + radius * y);
         let ends = [(0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0), (0.0, 1.0)];
-        self.move_to(at(0.0, 1.0));
+        self.0.push(Segment::Move(at(0.0, 1.0)));
         for pair in ends.windows(2).take(count) {
             let ((a, b), (x, y)) = (pair[0], pair[1]);
             let controls = [at(a + REACH * x, b + REACH * y), at(x + REACH * a, y + REACH * b)];
-            self.push(Segment::Cubic(controls[0], controls[1], at(x, y)));
+            self.0.push(Segment::Cubic(controls[0], controls[1], at(x, y)));
         }
-        self.close()
+        self.0.push(Segment::Close);
+        self
     }
 }
 
@@ -200,15 +177,15 @@ impl Canvas {
     }
 
     pub(crate) fn segment(&mut self, a: Point, b: Point, paint: &Paint) {
-        self.path(PathData::new().segment(a, b), paint);
+        self.path(PathData::default().segment(a, b), paint);
     }
 
     pub(crate) fn rect(&mut self, rect: &Rect, paint: &Paint) {
-        self.path(PathData::new().rect(rect), paint);
+        self.path(PathData::default().rect(rect), paint);
     }
 
     pub(crate) fn circle(&mut self, centre: Point, radius: f64, paint: &Paint) {
-        self.path(PathData::new().circle(centre, radius), paint);
+        self.path(PathData::default().circle(centre, radius), paint);
     }
 
     /// Shrinks to a frame what is so wide, and so high above and below its origin.

@@ -113,7 +113,3 @@ impl ColourMap {
 #[cfg(test)]
 #[path = "tests/colour.rs"]
 mod tests;
-
-#[cfg(test)]
-#[path = "tests/colour_map.rs"]
-mod map_tests;

@@ -1,13 +1,11 @@
-//! Drawing surface: points, colours, what is drawn, and the SVG writer. One unit is one
+//! Drawing surface: points, colours, and what is drawn. One unit is one
 //! typographic point (1/72 inch), so font sizes read as in a journal; y points downward.
 
 mod canvas;
 mod colour;
-mod svg;
 
 pub(crate) use canvas::{Canvas, Item, Paint, PathData, PlacedText, Raster, Segment};
 pub use colour::{Colour, ColourMap};
-pub(crate) use svg::{escape, number, svg};
 
 pub(crate) const PT_PER_MM: f64 = 72.0 / 25.4;
 
@@ -69,7 +67,6 @@ impl Rect {
         Point::new(0.5 * (self.x0 + self.x1), 0.5 * (self.y0 + self.y1))
     }
 
-    /// Grows by the same amount on all sides.
     pub(crate) fn grown(&self, by: f64) -> Self {
         Self { x0: self.x0 - by, y0: self.y0 - by, x1: self.x1 + by, y1: self.y1 + by }
     }

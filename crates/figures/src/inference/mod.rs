@@ -1,7 +1,6 @@
 //! Pictures of what fits leave uncertain: posteriors, profiles, singular values.
 
 mod corner;
-mod density;
 
 pub use corner::Corner;
 

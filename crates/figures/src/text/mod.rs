@@ -9,7 +9,8 @@
 mod font;
 mod markup;
 
-use crate::draw::{Canvas, Colour, Item, PathData, PlacedText, Point, escape};
+use crate::draw::{Canvas, Colour, Item, PathData, PlacedText, Point};
+use crate::files::escape;
 use font::{Face, Glyph, UNITS_PER_EM, width};
 use markup::{Script, TextRun, parse};
 
@@ -66,15 +67,14 @@ impl Span {
 pub(crate) struct TextLine {
     runs: Vec<TextRun>,
     spans: Vec<Span>,
-    plain: String,
+    pub(crate) plain: String,
     width_em: f64,
     top_em: f64,
     bottom_em: f64,
-    size: f64,
+    pub(crate) size: f64,
 }
 
 impl TextLine {
-    /// Lays out markup at a font size in points.
     pub(crate) fn new(markup: &str, size: f64) -> Self {
         Self::from_runs(&parse(markup), size)
     }
@@ -142,17 +142,9 @@ impl TextLine {
         self.width_em * self.size
     }
 
-    pub(crate) fn size(&self) -> f64 {
-        self.size
-    }
-
     /// The same in another size, its proportions kept.
     pub(crate) fn scaled(self, scale: f64) -> Self {
         Self { size: scale * self.size, ..self }
-    }
-
-    pub(crate) fn plain(&self) -> &str {
-        &self.plain
     }
 
     /// From the highest superscript to the lowest descender.
@@ -255,11 +247,10 @@ impl PlacedText {
         self.anchor.up * CAP_HEIGHT * self.line.size
     }
 
-    /// The text as outlines on the page.
     pub(crate) fn outlines(&self) -> PathData {
         let (sin, cos) = self.angle_deg.to_radians().sin_cos();
         let (left, down) = (-self.anchor.across * self.line.width(), self.down());
-        let mut path = PathData::new();
+        let mut path = PathData::default();
         for span in &self.line.spans {
             let mut start = span.x;
             for glyph in span.text.chars().map(|c| Glyph::new(span.style, c)) {
@@ -316,7 +307,3 @@ fn words(markup: &str) -> Vec<String> {
 #[cfg(test)]
 #[path = "tests/line.rs"]
 mod tests;
-
-#[cfg(test)]
-#[path = "tests/wrap.rs"]
-mod wrap_tests;

@@ -1,7 +1,7 @@
 //! Options of the verbs that simulate.
 
 use super::given::{some_speed, some_time};
-use super::values::{shard, some_shard, speeds};
+use super::values::{from_text, some_shard, speeds};
 use super::{Accuracy, Given, Threads};
 use clap::Args;
 use hertzchain_sim::Shard;
@@ -224,7 +224,7 @@ pub struct CampaignOptions {
     pub out: PathBuf,
     /// Only the i-th of n parts, for several machines: series are dealt out like cards
     #[arg(long, value_name = "i/n", default_value = "1/1")]
-    #[serde(skip_serializing, deserialize_with = "shard")]
+    #[serde(skip_serializing, deserialize_with = "from_text")]
     pub shard: Shard,
     /// Seed of all that is random, in place of the experiment's
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]

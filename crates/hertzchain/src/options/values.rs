@@ -30,7 +30,7 @@ impl Display for Text {
     }
 }
 
-fn from_text<'de, D: Deserializer<'de>, T: FromStr<Err = String>>(
+pub(super) fn from_text<'de, D: Deserializer<'de>, T: FromStr<Err: Display>>(
     source: D,
 ) -> Result<T, D::Error> {
     let text = Text::deserialize(source)?;
@@ -42,14 +42,9 @@ pub(super) fn texts<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<String>,
     Ok(Vec::<Text>::deserialize(source)?.iter().map(Text::to_string).collect())
 }
 
-/// A part of a whole as text, such as 1/4.
-pub(super) fn shard<'de, D: Deserializer<'de>>(source: D) -> Result<Shard, D::Error> {
-    Text::deserialize(source)?.to_string().parse().map_err(D::Error::custom)
-}
-
-/// The same where it may be absent.
+/// A part of a whole, such as 1/4, where it may be absent.
 pub(super) fn some_shard<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Shard>, D::Error> {
-    shard(source).map(Some)
+    from_text(source).map(Some)
 }
 
 /// Speeds as text: a range, or a list of numbers.

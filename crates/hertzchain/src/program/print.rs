@@ -131,7 +131,6 @@ fn shown(text: &str, bold: bool) -> String {
     parts.collect::<Vec<_>>().join(BOLD[0])
 }
 
-/// Reports which files were written, one path a line.
 pub(crate) fn written(files: &str) {
     eprint!("Written:\n{}", without_controls(files));
 }

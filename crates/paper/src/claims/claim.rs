@@ -74,12 +74,7 @@ pub enum ClaimError {
     Text(#[from] toml::de::Error),
     /// A row names no predicate that exists.
     #[error("claim `{claim}` names the predicate `{predicate}`, which does not exist")]
-    Predicate {
-        /// The row.
-        claim: String,
-        /// The name.
-        predicate: String,
-    },
+    Predicate { claim: String, predicate: String },
     /// Two rows share a name.
     #[error("there are two claims `{0}`")]
     Twice(String),
@@ -90,7 +85,6 @@ pub(crate) type Predicate<E> = fn(&Claim, &E) -> ClaimFinding;
 /// A claim and the code that decides it on numbers of a kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Evaluator<E = Evidence> {
-    /// The row.
     pub claim: Claim,
     predicate: Predicate<E>,
 }
@@ -155,7 +149,6 @@ pub(crate) fn read<E>(
 /// Findings of a claim on draws of the printed constants within half a unit of their last digit.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rounded {
-    /// Number of draws.
     pub draws: usize,
     /// Draws with each verdict, in the order of [`ClaimVerdict::ALL`], by the side on
     /// which their numbers lie: how accurately a draw was computed decides nothing.
@@ -201,7 +194,6 @@ pub struct EvaluatedClaim {
     pub verdict: ClaimVerdict,
     /// What the constants as printed give.
     pub(crate) finding: ClaimFinding,
-    /// What rounding does, if it was looked at.
     pub(crate) rounded: Option<Rounded>,
 }
 

@@ -8,7 +8,6 @@ pub(crate) const SPEED_SCATTER_M_S: f64 = 0.003;
 /// Shots behind each point of the paper.
 pub(crate) const SHOTS_PER_POINT: f64 = 20.0;
 
-/// Which passage a time of flight belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum TofBranch {
     /// From the sensor bead to the wall.
@@ -32,15 +31,11 @@ impl TofBranch {
 /// What one shot showed. Numbers that the shot did not give are not a number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShotPoint {
-    /// Speed of the striker in m/s.
     pub speed_m_s: f64,
-    /// Incident ToF in s.
     pub tof_incident_s: f64,
-    /// Reflected ToF in s.
     pub tof_reflected_s: f64,
     /// Peak at the sensor bead, incoming, in N.
     pub sensor_peak_n: f64,
-    /// Peak at the wall in N.
     pub wall_peak_n: f64,
     /// Peak at the sensor bead, returning, in N.
     pub returning_peak_n: f64,
@@ -58,24 +53,19 @@ pub struct ShotPoint {
     pub excess_s: [f64; 2],
     /// By how much beads 1 and N are farther apart than at rest, in m, once the pulse has returned.
     pub loosened_m: f64,
-    /// Relative accuracy reached of both ToFs.
+    /// Relative accuracy of both ToFs.
     pub accuracy_reached: f64,
     /// Relative accuracy of the sensor, wall and returning peak.
     pub peak_accuracy: f64,
-    /// Absolute accuracy of the second returning peak in N.
     pub second_peak_accuracy_n: f64,
     /// Relative accuracy of the three widths.
     pub width_accuracy: f64,
-    /// Absolute accuracy of the striker's two velocities in m/s.
     pub striker_accuracy_m_s: f64,
-    /// Absolute accuracy of both differences of ToFs in s.
     pub excess_accuracy_s: f64,
-    /// Absolute accuracy of the loosening in m.
     pub loosened_accuracy_m: f64,
 }
 
 impl ShotPoint {
-    /// The ToF of a branch in s.
     pub(crate) fn tof_s(&self, branch: TofBranch) -> f64 {
         match branch {
             TofBranch::Incident => self.tof_incident_s,
@@ -83,18 +73,14 @@ impl ShotPoint {
         }
     }
 
-    /// Absolute accuracy of a ToF in s.
     pub(crate) fn tof_accuracy_s(&self, branch: TofBranch) -> f64 {
         self.accuracy_reached * self.tof_s(branch)
     }
 }
 
-/// One case over speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Name of the case: `dry`, `motor`, ...
     pub case: String,
-    /// Its shots in order of speed.
     pub points: Vec<ShotPoint>,
 }
 
@@ -103,12 +89,10 @@ impl Curve {
         self.points.iter().map(|p| p.speed_m_s).collect()
     }
 
-    /// All ToFs of a branch in s.
     pub(crate) fn tofs_s(&self, branch: TofBranch) -> Vec<f64> {
         self.points.iter().map(|p| p.tof_s(branch)).collect()
     }
 
-    /// The shot at a speed.
     pub fn at(&self, speed_m_s: f64) -> Option<&ShotPoint> {
         let near = |p: &&ShotPoint| (p.speed_m_s - speed_m_s).abs() < 1e-9 * speed_m_s;
         self.points.iter().find(near)
@@ -171,11 +155,8 @@ impl Curve {
 /// Wet over dry incident ToF at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TofRatio {
-    /// Speed of the striker in m/s.
     pub speed_m_s: f64,
-    /// Ratio of the incident ToFs.
     pub incident: f64,
-    /// Ratio of the reflected ToFs.
     pub reflected: f64,
     /// Relative accuracy of both.
     pub accuracy_reached: f64,
@@ -190,11 +171,8 @@ impl TofRatio {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PrintedOil {
-    /// Name of its case.
     pub case: String,
-    /// Kinematic viscosity in m²/s.
     pub kinematic_viscosity_m2_s: f64,
-    /// Density in kg/m³.
     pub density_kg_m3: f64,
 }
 
@@ -206,33 +184,24 @@ impl PrintedOil {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MeasuredKind {
-    /// Peak force at the sensor bead over that at the wall.
     SensorOverWall,
-    /// A time of flight in s.
     Tof(TofBranch),
-    /// Wet over dry incident ToF.
     Ratio,
 }
 
 /// A measured point, read off a published figure.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Digitised {
-    /// What was measured.
     pub what: MeasuredKind,
-    /// Case it belongs to.
     pub case: String,
-    /// Speed in m/s.
     pub speed_m_s: f64,
-    /// Its value.
     pub value: f64,
-    /// Its standard error.
     pub standard_error: f64,
 }
 
 /// All that claims are evaluated on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Evidence {
-    /// One curve a case.
     pub curves: Vec<Curve>,
     pub(crate) oils: Vec<PrintedOil>,
     /// Viscosity over Young modulus of the dry balls, η/Y in s.

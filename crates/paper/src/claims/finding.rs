@@ -8,7 +8,6 @@ pub(crate) const IN_PART: f64 = 0.5;
 /// A predicate's answer: a number with its accuracy, and what follows from it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ClaimFinding {
-    /// What follows.
     pub verdict: ClaimVerdict,
     /// What would follow if the numbers were exact: on which side they lie, be it
     /// by less than their accuracy.
@@ -26,9 +25,8 @@ pub(crate) struct ClaimFinding {
 }
 
 /// How far a reading is from where what is counted changes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub(crate) struct Distance {
-    /// The reading's distance from there.
     pub margin: f64,
     /// Absolute accuracy of the reading: a count whose margins are all larger is exact.
     pub accuracy: f64,
@@ -40,7 +38,6 @@ impl ClaimFinding {
         self.expected.map(|expected| self.value - expected)
     }
 
-    /// Of a claim for which numbers are missing.
     pub(crate) fn without_numbers(why: &str) -> Self {
         Self {
             verdict: ClaimVerdict::NotDecidable,
@@ -53,7 +50,6 @@ impl ClaimFinding {
         }
     }
 
-    /// Of a claim that one comparison decides.
     pub(crate) fn of_one(margin: f64, value: f64, accuracy: f64, detail: String) -> Self {
         let mut comparisons = Comparisons::default();
         comparisons.add(margin, value, accuracy, String::new);

@@ -21,5 +21,7 @@ pub(crate) use self::{
         TofBranch,
     },
     finding::{ClaimFinding, Comparisons, IN_PART},
-    report::{claims_json, claims_markdown, rounded_text, verdicts_text, with_unit},
+    report::{
+        claims_json, claims_markdown, rounded_text, table_head, table_row, verdicts_text, with_unit,
+    },
 };

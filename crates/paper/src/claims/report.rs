@@ -22,10 +22,7 @@ fn row(evaluated: &EvaluatedClaim) -> Value {
         "value_expected": finding.expected,
         "deviation": finding.deviation(),
         "detail": finding.detail,
-        "nearest_change": finding.nearest_change.map(|nearest| json!({
-            "margin": nearest.margin,
-            "accuracy": nearest.accuracy,
-        })),
+        "nearest_change": finding.nearest_change,
         "verdict_as_printed": finding.verdict.name(),
         "verdict": evaluated.verdict.name(),
     });
@@ -58,8 +55,7 @@ pub(crate) fn claims_markdown(evaluated: &[EvaluatedClaim], head: &str) -> Strin
         header.push("rounding allows");
     }
     let _ = writeln!(page, "{}\n", totals(evaluated));
-    let _ = writeln!(page, "| {} |", header.join(" | "));
-    let _ = writeln!(page, "|{}", "---|".repeat(header.len()));
+    page += &table_head(header);
     for evaluated in evaluated {
         let rounding = drawn.then(|| rounded_text(evaluated).unwrap_or_default());
         let row = [
@@ -68,14 +64,25 @@ pub(crate) fn claims_markdown(evaluated: &[EvaluatedClaim], head: &str) -> Strin
             computed_text(evaluated),
             needed(evaluated),
         ];
-        let row: Vec<String> = row.into_iter().chain(rounding).collect();
-        let _ = writeln!(page, "| {} |", row.join(" | "));
+        page += &table_row(row.into_iter().chain(rounding));
     }
     page.push_str("\n## One by one\n");
     for evaluated in evaluated {
         section(&mut page, evaluated);
     }
     page
+}
+
+/// A row of a Markdown table.
+pub(crate) fn table_row(cells: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let cells = cells.into_iter().map(|cell| format!("| {} ", cell.as_ref()));
+    cells.collect::<String>() + "|\n"
+}
+
+/// The head of a Markdown table.
+pub(crate) fn table_head<'a>(titles: impl IntoIterator<Item = &'a str>) -> String {
+    let titles: Vec<&str> = titles.into_iter().collect();
+    format!("{}|{}\n", table_row(&titles), "---|".repeat(titles.len()))
 }
 
 /// What makes which verdict, for the pages.
@@ -89,13 +96,11 @@ pub(crate) fn verdicts_text() -> String {
     )
 }
 
-/// What was drawn, for the page.
 const ROUNDING: &str = "Rounding: every printed constant is drawn within half a unit of its last \
     digit, steel's Poisson ratio 0.3 from 0.25 to 0.35, and all speeds are computed anew; a claim of which \
     one draw lies on another side than the printed constants is not decidable. A draw that lies closer to \
     a threshold than its accuracy is computed again more accurately.\n\n";
 
-/// How many claims have which verdict, in a sentence.
 fn totals(evaluated: &[EvaluatedClaim]) -> String {
     let count = |verdict| evaluated.iter().filter(|j| j.verdict == verdict).count();
     let parts = ClaimVerdict::ALL.map(|verdict| format!("{} {}", count(verdict), verdict.name()));
@@ -181,7 +186,6 @@ pub(crate) fn rounded_text(evaluated: &EvaluatedClaim) -> Option<String> {
     Some(format!("{} to {high}", digits(low)))
 }
 
-/// A number with the unit of a claim.
 pub(crate) fn with_unit(value: f64, claim: &Claim) -> String {
     of_unit(digits(value), claim)
 }

@@ -60,7 +60,6 @@ pub(crate) fn rig(experiment: &Experiment) -> Result<RigDrawing, ReproduceError>
     })
 }
 
-/// A part of the file's `[rig]`.
 fn part(experiment: &Experiment, kind: RigPartKind) -> Option<&RigPart> {
     experiment.rig().and_then(|rig| rig.part(kind))
 }
@@ -111,7 +110,6 @@ fn kilohertz(hertz: f64) -> String {
     format!("{} kHz", digits(hertz * 1e-3))
 }
 
-/// Words that stay on one line.
 fn unbroken(words: &str) -> String {
     words.replace(' ', "\u{a0}")
 }

@@ -52,7 +52,6 @@ pub(super) fn readings(scan: &ReadingScan) -> Figure {
         .caption(&readings_caption(scan))
 }
 
-/// What the mark means.
 const ROUNDING: &str = "Not decidable in the default reading: there rounding of the printed constants \
     alone flips the verdict that they give as printed, which is shown.";
 
@@ -311,7 +310,6 @@ fn held(rig: &TriedRig) -> String {
     format!("{friction}, {push}")
 }
 
-/// Mean of every contact over all shots.
 fn means(rows: &[&[f64]]) -> Vec<f64> {
     let contacts = rows.first().map_or(0, |gaps_m| gaps_m.len());
     let mean_of = |contact: usize| {

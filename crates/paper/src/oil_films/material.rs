@@ -8,9 +8,10 @@ use hertzchain_chain::Material;
 use hertzchain_experiment::{Experiment, PathError};
 use hertzchain_sim::{Control, InstructionSet, run_plans};
 use rayon::prelude::*;
+use serde::Serialize;
 
 /// Wet contacts as Hertz's with a viscoelastic loss: steel's Young modulus, and two numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct WetContact {
     /// Y/(1 − ν²) over that of the dry steel, and so K over K.
     pub stiffness_ratio: f64,
@@ -19,7 +20,7 @@ pub(crate) struct WetContact {
 }
 
 /// A film as a material, and the paper's own material for its oil.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct EffectiveMaterial {
     pub case: &'static str,
     pub speed_m_s: f64,
@@ -28,7 +29,6 @@ pub(crate) struct EffectiveMaterial {
     pub paper: WetContact,
 }
 
-/// Materials of all films of oil.
 pub(super) fn effective(
     cases: &Cases,
     films: &Evidence,
@@ -136,7 +136,6 @@ impl<'a> WetRow<'a> {
         Ok(self.contact([f64::NAN; 2]))
     }
 
-    /// The paper's material at this speed.
     fn paper(&self) -> Result<WetContact, ReproduceError> {
         let (chain, _) = self.experiment.chain(Some(self.speed_m_s))?;
         let wet = chain.sections.iter().find_map(|section| section.material);

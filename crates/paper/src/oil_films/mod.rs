@@ -14,7 +14,6 @@ use crate::claims::{EvaluatedClaim, Evaluator, Evidence, claims, evaluate_all};
 use crate::reproduce::{Cases, Effort, Gathering, OILS, ReproduceError, ReproduceProgress, gather};
 use hertzchain_experiment::Reading;
 
-/// Speeds of the striker in m/s.
 pub(crate) const SPEEDS_M_S: [f64; 5] = [0.075, 0.15, 0.3, 0.6, 1.2];
 
 /// The paper's statements on oil that ratios of incident times decide, by their names.
@@ -38,7 +37,6 @@ const MODEL_ACCURACY: f64 = 1e-6;
 /// Wet contacts of one kind at all speeds.
 #[derive(Clone, Debug)]
 pub(crate) struct OilModel {
-    /// What its wet contacts are.
     pub name: String,
     pub evidence: Evidence,
     pub evaluated: Vec<EvaluatedClaim>,

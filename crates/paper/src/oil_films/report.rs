@@ -1,7 +1,7 @@
 //! Films of oil as Markdown, CSV and JSON.
 
 use super::{OilFilms, OilModel, SPEEDS_M_S, WetContact, incident};
-use crate::claims::{claims_json, computed_text};
+use crate::claims::{claims_json, computed_text, table_head, table_row};
 use crate::reproduce::OILS;
 use crate::reproduce::tables::TableText;
 use serde_json::{Value, json};
@@ -20,14 +20,14 @@ impl OilFilms {
         page += "\n## Wet over dry incident time\n\n";
         let names = self.models.each_ref().map(|model| model.name.as_str());
         let [film, rest @ ..] = names;
-        line(&mut page, ["oil", "v0, m/s", film, "least to largest"].into_iter().chain(rest));
-        rule(&mut page, 4 + rest.len());
+        let head = ["oil", "v0, m/s", film, "least to largest"];
+        page += &table_head(head.into_iter().chain(rest));
         for (place, (case, speed, ratios)) in self.rows().enumerate() {
             let [least, most] = self.range(place);
             let [film, rest @ ..] = ratios.map(|ratio| format!("{ratio:.4}"));
             let range = format!("{least:.3} to {most:.3}");
             let first = [case.to_owned(), speed.to_string(), film, range];
-            line(&mut page, first.into_iter().chain(rest));
+            page += &table_row(first.into_iter().chain(rest));
         }
         page += "\nRoot mean square less the paper's:";
         for model in &self.models[..3] {
@@ -47,12 +47,11 @@ impl OilFilms {
     fn claims(&self, page: &mut String) {
         page.push_str("\n## What the paper says\n\n");
         let names = self.models.iter().map(|model| model.name.as_str());
-        line(page, std::iter::once("claim").chain(names));
-        rule(page, 1 + self.models.len());
+        *page += &table_head(std::iter::once("claim").chain(names));
         for (at, first) in self.models[0].evaluated.iter().enumerate() {
             let found = self.models.iter().filter_map(|model| model.evaluated.get(at));
             let cells = found.map(|own| format!("{}: {}", own.verdict, computed_text(own)));
-            line(page, std::iter::once(first.claim.statement.clone()).chain(cells));
+            *page += &table_row(std::iter::once(first.claim.statement.clone()).chain(cells));
         }
     }
 
@@ -62,8 +61,7 @@ impl OilFilms {
              Hertz's contact with a viscoelastic loss, of steel's Young modulus, that gives the film's time and wall peak.\n\n",
         );
         let titles = ["K over dry", "paper", "ν", "paper", "η, Pa s", "paper"];
-        line(page, ["oil", "v0, m/s"].into_iter().chain(titles));
-        rule(page, 2 + titles.len());
+        *page += &table_head(["oil", "v0, m/s"].into_iter().chain(titles));
         for row in &self.materials {
             let (own, paper) = (numbers(&row.film), numbers(&row.paper));
             let pairs = (0..3).flat_map(|at| [own[at], paper[at]].map(|n| (at, n)));
@@ -72,7 +70,7 @@ impl OilFilms {
                 _ => format!("{number:.3}"),
             });
             let first = [row.case.to_owned(), row.speed_m_s.to_string()];
-            line(page, first.into_iter().chain(cells));
+            *page += &table_row(first.into_iter().chain(cells));
         }
     }
 
@@ -102,28 +100,12 @@ impl OilFilms {
                 "claims": claims_json(&model.evaluated),
             })
         };
-        let contact = |contact: &WetContact| {
-            let [stiffness_ratio, poisson_ratio, viscosity_pa_s] = numbers(contact);
-            json!({
-                "stiffness_ratio": stiffness_ratio,
-                "poisson_ratio": poisson_ratio,
-                "viscosity_pa_s": viscosity_pa_s,
-            })
-        };
-        let materials = self.materials.iter().map(|row| {
-            json!({
-                "case": row.case,
-                "speed_m_s": row.speed_m_s,
-                "film": contact(&row.film),
-                "paper": contact(&row.paper),
-            })
-        });
         json!({
             "speed_m_s": SPEEDS_M_S,
             "models": self.models.iter().map(model).collect::<Vec<_>>(),
             "ratio_range": OILS.iter().zip(&self.ranges).map(|(case, own)| json!({ "case": case, "least_largest": own })).collect::<Vec<_>>(),
             "factor": self.factor,
-            "materials": materials.collect::<Vec<_>>(),
+            "materials": self.materials,
         })
     }
 
@@ -149,15 +131,4 @@ fn by_oil(ratios: &[f64]) -> Value {
 
 fn numbers(contact: &WetContact) -> [f64; 3] {
     [contact.stiffness_ratio, contact.poisson_ratio, contact.viscosity_pa_s]
-}
-
-fn line(page: &mut String, cells: impl Iterator<Item = impl AsRef<str>>) {
-    cells.for_each(|cell| {
-        let _ = write!(page, "| {} ", cell.as_ref());
-    });
-    page.push_str("|\n");
-}
-
-fn rule(page: &mut String, columns: usize) {
-    let _ = writeln!(page, "|{}", "---|".repeat(columns));
 }

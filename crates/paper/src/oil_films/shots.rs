@@ -65,7 +65,6 @@ impl FilmVariant {
     }
 }
 
-/// The preset of an oil's film.
 fn film(oil: usize) -> Result<Experiment, ReproduceError> {
     preset(&format!("{}-film", OILS[oil])).map_err(ReproduceError::Preset)
 }

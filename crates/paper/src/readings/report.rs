@@ -30,7 +30,6 @@ pub(crate) fn scan_csv(scan: &ReadingScan) -> String {
     csv
 }
 
-/// What the scan shows, for people.
 pub(crate) fn scan_markdown(scan: &ReadingScan) -> String {
     let mut page = String::from("# Which claims hold in which reading\n\n");
     page.push_str(
@@ -117,7 +116,6 @@ fn product(page: &mut String, scan: &ReadingScan) {
     }
 }
 
-/// Switches with the number of their options.
 fn factors(factors: &[SwitchOptions]) -> String {
     let texts = factors.iter().map(|(name, options)| format!("{name} ({})", options.len()));
     texts.collect::<Vec<_>>().join(", ")
@@ -189,11 +187,11 @@ fn prices(page: &mut String, scan: &ReadingScan) {
          best, of these the one with the highest score, and what is lost there.\n\n\
          | claim | default | best | reading | score | lost |\n|---|---|---|---|---|---|\n",
     );
-    for price in scan.prices() {
-        let name = names(scan, &[price.claim]);
-        let verdict = |row: &ReadingRow| row.verdicts.get(price.claim).map_or("", |v| v.name());
+    for (claim, row) in scan.prices() {
+        let name = names(scan, &[claim]);
+        let verdict = |row: &ReadingRow| row.verdicts.get(claim).map_or("", |v| v.name());
         let default = verdict(&scan.default);
-        match &price.row {
+        match row {
             None => {
                 let _ = writeln!(page, "| {name} | {default} | {default} | no reading tried | | |");
             }

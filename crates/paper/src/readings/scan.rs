@@ -11,9 +11,7 @@ use std::time::Instant;
 /// The claims' verdicts in one reading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadingRow {
-    /// The reading.
     pub reading: Reading,
-    /// One verdict a claim.
     pub verdicts: Vec<ClaimVerdict>,
     /// The deciding numbers, not a number where there is none.
     pub values: Vec<f64>,
@@ -45,16 +43,6 @@ impl ReadingRow {
         };
         (of(true), of(false))
     }
-}
-
-/// Cost of a claim that the default reading does not meet.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Price {
-    /// The claim, by index.
-    pub claim: usize,
-    /// The best reading in which it is met better than in the default one;
-    /// `None` when no reading that was tried does.
-    pub row: Option<ReadingRow>,
 }
 
 /// The claims in many readings.
@@ -158,19 +146,17 @@ impl ReadingScan {
         found
     }
 
-    /// For each claim that the default does not fully meet, the best reading that meets it better.
-    pub(crate) fn prices(&self) -> Vec<Price> {
+    /// Each claim, by index, that the default does not fully meet, with the best reading in which it
+    /// is met better; `None` when no reading that was tried does.
+    pub(crate) fn prices(&self) -> impl Iterator<Item = (usize, Option<&ReadingRow>)> {
         let open = self.default.verdicts.iter().enumerate();
         let open = open.filter(|(_, verdict)| **verdict != ClaimVerdict::Holds);
-        open.map(|(claim, verdict)| self.price(claim, *verdict)).collect()
-    }
-
-    fn price(&self, claim: usize, verdict: ClaimVerdict) -> Price {
-        let score = |row: &&ReadingRow| row.verdicts.get(claim).map_or(0.0, |v| v.score());
-        let most = self.rows().map(|row| score(&row)).fold(0.0, f64::max);
-        let better = self.rows().filter(|row| score(row) == most && most > verdict.score());
-        let row = better.reduce(|a, b| if closer(b, a) { b } else { a });
-        Price { claim, row: row.cloned() }
+        open.map(|(claim, verdict)| {
+            let score = |row: &&ReadingRow| row.verdicts.get(claim).map_or(0.0, |v| v.score());
+            let most = self.rows().map(|row| score(&row)).fold(0.0, f64::max);
+            let better = self.rows().filter(|row| score(row) == most && most > verdict.score());
+            (claim, better.reduce(|a, b| if closer(b, a) { b } else { a }))
+        })
     }
 }
 

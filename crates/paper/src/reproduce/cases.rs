@@ -17,7 +17,6 @@ pub const CASES: [&str; 6] = ["hertz", "hertz-viscoelastic", "dry", "pump", "gea
 
 pub(crate) const OILS: [&str; 3] = ["pump", "gear", "motor"];
 
-/// The paper's chains in one reading.
 #[derive(Clone, Debug)]
 pub(crate) struct Cases(Vec<(&'static str, Experiment)>);
 
@@ -40,7 +39,6 @@ impl Cases {
         self.0.iter().map(changed).collect::<Result<_, ReproduceError>>().map(Self)
     }
 
-    /// Names and experiments, in the order of the tables.
     pub(super) fn all(&self) -> &[(&'static str, Experiment)] {
         &self.0
     }

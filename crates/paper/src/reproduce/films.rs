@@ -18,11 +18,8 @@ const FILM_SHOTS: [(&str, f64); 2] = [("dry", 0.3993), ("motor", 0.3993)];
 /// The paper's channel, bead sensor plus wall, of one shot.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SignalShot {
-    /// The case.
     pub case: String,
-    /// Speed in m/s.
     pub speed_m_s: f64,
-    /// Times in s.
     pub time_s: Vec<f64>,
     /// Dynamic force of the bead sensor and the wall, added, in N.
     pub channel_n: Vec<f64>,
@@ -30,18 +27,13 @@ pub(crate) struct SignalShot {
     pub peaks: Vec<(f64, f64)>,
 }
 
-/// One shot bead by bead, with its energy.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Film {
-    /// The case.
     pub case: String,
-    /// Speed in m/s.
     pub speed_m_s: f64,
-    /// Times in s.
     pub time_s: Vec<f64>,
     /// Velocity of each body in m/s, the striker first; one column a body.
     pub velocity_m_s: Vec<Vec<f64>>,
-    /// Energy over time.
     pub budgets: Vec<Budget>,
 }
 
@@ -54,7 +46,6 @@ const FRAME_S: f64 = 2e-6;
 /// Accuracy of a film, whose budget residual is of its size.
 const FILM_ACCURACY: f64 = 1e-9;
 
-/// Computes the signals of the paper's Fig. 2.
 pub(super) fn signals(cases: &Cases, accuracy: f64) -> Result<Vec<SignalShot>, ReproduceError> {
     let signal = |&(case, speed_m_s): &(&str, f64)| {
         let plan = plan(cases.get(case)?, speed_m_s, accuracy)?.for_flights();
@@ -77,7 +68,6 @@ pub(super) fn signals(cases: &Cases, accuracy: f64) -> Result<Vec<SignalShot>, R
     SIGNAL_SHOTS.par_iter().map(signal).collect()
 }
 
-/// Computes the shots that are followed bead by bead.
 pub(super) fn films(cases: &Cases) -> Result<Vec<Film>, ReproduceError> {
     let film = |&(case, speed_m_s): &(&str, f64)| {
         let plan = plan(cases.get(case)?, speed_m_s, FILM_ACCURACY)?.for_flights();

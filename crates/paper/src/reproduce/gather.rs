@@ -13,20 +13,15 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{PoisonError, RwLock};
 
-/// How the paper's chains are shot.
 #[derive(Clone, Debug)]
 pub(crate) struct Gathering<'a> {
-    /// The chains.
     pub cases: &'a Cases,
-    /// Speeds of the striker in m/s.
     pub speeds_m_s: &'a [f64],
     /// Relative accuracy asked of ToFs.
     pub accuracy: f64,
-    /// How much is known of every shot.
     pub effort: Effort<'a>,
 }
 
-/// How much is known of every shot.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Effort<'a> {
     /// All numbers, each with the accuracy it reached: shots run again at a tenth of the tolerance.
@@ -78,7 +73,6 @@ struct ShotTarget {
     case: &'static str,
     speed_m_s: f64,
     plan: Plan,
-    /// How the reading times pulses.
     pick: Pick,
     /// Whether its way back without gaps is asked for.
     closing: bool,
@@ -132,7 +126,6 @@ impl ShotTarget {
     }
 }
 
-/// Points of all targets, in order.
 fn shot_at(
     targets: &[ShotTarget],
     effort: Effort<'_>,
@@ -202,7 +195,6 @@ fn lean_points(
     in_order.collect()
 }
 
-/// The plan of a shot of a case.
 pub(crate) fn plan(
     experiment: &Experiment,
     speed_m_s: f64,

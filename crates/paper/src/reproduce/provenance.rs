@@ -14,34 +14,22 @@ pub const PROVENANCE: &str = "provenance.json";
 /// Name of the program in the file.
 const PROGRAM: &str = "hertzchain";
 
-/// Where the numbers of a reproduction come from.
 #[derive(Clone, Debug, Serialize, PartialEq)]
 pub struct Provenance {
-    /// Version of this program.
     pub version: &'static str,
-    /// Commit that was built, when known.
     pub commit: Option<String>,
-    /// Name of the solver.
     pub solver: String,
-    /// Tolerance per step of the solver.
     pub tolerance: f64,
-    /// Relative accuracy asked of ToFs.
     pub accuracy_asked: f64,
-    /// Largest relative accuracy reached of all ToFs.
     pub accuracy_reached: f64,
-    /// Seed of all draws.
     pub seed: u64,
-    /// Draws of the printed constants within their rounding.
     #[serde(rename = "draws_within_rounding")]
     pub draws: usize,
-    /// Instruction set, operating system, processor, number of threads.
     pub machine: String,
-    /// Wall time in s.
     pub wall_time_s: f64,
 }
 
 impl Provenance {
-    /// As JSON, with the names of the run's files.
     pub(crate) fn json(&self, files: &[&str]) -> Value {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         let mut about = serde_json::to_value(self).unwrap_or_default();
@@ -52,7 +40,6 @@ impl Provenance {
     }
 }
 
-/// Instruction set, operating system, processor, number of threads.
 pub(super) fn machine() -> String {
     let threads = rayon::current_num_threads();
     let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);

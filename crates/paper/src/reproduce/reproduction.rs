@@ -138,7 +138,6 @@ fn evaluated(
     Ok(evaluate_all(&evaluators, evidence, &draws))
 }
 
-/// Claims that rounding flips, by index.
 fn flipped(evaluated: &[EvaluatedClaim]) -> Vec<usize> {
     let flipped = evaluated.iter().enumerate();
     let flipped = flipped.filter(|(_, evaluated)| evaluated.flips_by_rounding());
@@ -209,7 +208,6 @@ impl Reproduction {
     }
 }
 
-/// The head of the page of claims.
 fn head(reading: &str) -> String {
     format!("# What the paper says, and what its model shows\n\nRead as: {reading}.\n\n{MEANING}")
 }

@@ -30,7 +30,6 @@ fn curves(evidence: &Evidence) -> impl Iterator<Item = &Curve> {
     CASES.iter().filter_map(|case| evidence.curve(case))
 }
 
-/// Times of flight and peaks, one row a shot.
 pub(crate) fn tof_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new(
         "case,speed_m_s,tof_incident_s,tof_reflected_s,sensor_peak_n,wall_peak_n,\
@@ -56,7 +55,6 @@ fn tof_row(p: &ShotPoint) -> [f64; 7] {
     ]
 }
 
-/// Wet over dry times of flight.
 pub(super) fn ratios_csv(evidence: &Evidence) -> String {
     let mut csv = TableText::new("case,speed_m_s,ratio_incident,ratio_reflected,accuracy_reached");
     for case in OILS {

@@ -6,7 +6,6 @@ use hertzchain_sim::rig::RigError;
 /// Something that the paper does not state of its rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Factor {
-    /// In words.
     pub name: &'static str,
     /// Its number in the experiment file.
     pub path: &'static str,
@@ -58,14 +57,12 @@ pub(crate) static FACTORS: [Factor; 4] = [
     },
 ];
 
-/// Place of the push in [`FACTORS`].
 const PUSH: usize = 1;
 
 /// Way in m by which the springs are pressed, whatever their force: 0.24 N at 100 N/m.
 const PRESSED_M: f64 = 2.4e-3;
 
 impl Factor {
-    /// The level of the paper's preset, in SI.
     pub(crate) fn usual(&self) -> f64 {
         self.levels[self.usual]
     }
@@ -85,9 +82,7 @@ impl Factor {
 /// One rig: a value in SI for each of [`FACTORS`], and what is on its contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TriedRig {
-    /// In words.
     pub name: String,
-    /// The values.
     pub values: [f64; 4],
     /// Number of the case of the experiment, from 0.
     pub case: usize,
@@ -178,7 +173,6 @@ impl RigDesign {
         Ok(self.experiment.set(&all)?)
     }
 
-    /// Taps before a shot, where there are any.
     pub(super) fn taps(&self) -> usize {
         self.experiment.campaign().taps
     }

@@ -14,17 +14,13 @@ use rayon::prelude::*;
 /// Shots of equal speed, with taps before each and without.
 #[derive(Clone, Debug)]
 pub(crate) struct SpeedSeries {
-    /// The speed in m/s.
     pub speed_m_s: f64,
-    /// Shots without taps.
     pub loose: Vec<Shot>,
-    /// Shots with taps.
     pub tapped: Vec<Shot>,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Observed {
-    /// The rig.
     pub rig: TriedRig,
     /// Series by speed, slowest first.
     pub speeds: Vec<SpeedSeries>,
@@ -63,7 +59,6 @@ pub(crate) fn rebound_m_s(shot: &Shot) -> f64 {
     }
 }
 
-/// Largest of a row's gaps in m.
 pub(super) fn largest_m(gaps_m: &[f64]) -> f64 {
     gaps_m.iter().copied().fold(0.0, f64::max)
 }
@@ -103,12 +98,10 @@ impl Observed {
     }
 }
 
-/// Mean of numbers; not a number if there are none.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Sets of series that are drawn.
 const DRAWS: usize = 1000;
 
 const SEED: u64 = 1;
@@ -119,7 +112,6 @@ const SURE: f64 = 1.96;
 /// A number with the error that 95 % stay within.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WithError {
-    /// The number.
     pub value: f64,
     /// Half of its 95 % interval.
     pub error: f64,

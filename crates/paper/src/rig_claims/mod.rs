@@ -21,7 +21,6 @@ pub(crate) use self::{
 
 use crate::claims::{ClaimError, Evaluator, read};
 
-/// The claims as they come with the program.
 static PAPER: &str = include_str!("../../data/rig_claims.toml");
 
 /// What the paper says of its rig, in the order of the data file.

@@ -112,7 +112,6 @@ fn rebound(claim: &Claim, evidence: &RigEvidence) -> ClaimFinding {
     a_series_each(claim, evidence, |at| mean_of(&each(&at.tapped, away_m_s)))
 }
 
-/// The series of a claim's speeds.
 fn within<'a>(claim: &Claim, observed: &'a Observed) -> impl Iterator<Item = &'a SpeedSeries> {
     let speeds = claim.from_m_s..=claim.to_m_s;
     let series = observed.speeds.iter();

@@ -7,7 +7,7 @@ use super::evidence::{
 };
 use crate::claims::{
     ClaimError, EvaluatedClaim, TofBranch, claims_json, claims_markdown, computed_text,
-    evaluate_all,
+    evaluate_all, table_head, table_row,
 };
 use hertzchain_sim::rig::Shot;
 use serde_json::{Map, Value, json};
@@ -56,17 +56,12 @@ impl RigClaims {
             self.about
         );
         let mut page = claims_markdown(&self.evaluated, &head);
-        page.push_str("\n## Rig by rig\n\n| rig |");
-        for evaluated in &self.evaluated {
-            let _ = write!(page, " {} |", evaluated.claim.id);
-        }
-        let _ = writeln!(page, "\n|{}", "---|".repeat(self.evaluated.len() + 1));
+        page.push_str("\n## Rig by rig\n\n");
+        let ids = self.evaluated.iter().map(|evaluated| evaluated.claim.id.as_str());
+        page += &table_head(std::iter::once("rig").chain(ids));
         for (rig, evaluated) in &self.rigs {
-            let cells = evaluated.iter().map(|j| {
-                let computed = computed_text(j);
-                format!(" {}: {computed} |", j.verdict)
-            });
-            let _ = writeln!(page, "| {} |{}", rig.name, cells.collect::<String>());
+            let cells = evaluated.iter().map(|j| format!("{}: {}", j.verdict, computed_text(j)));
+            page += &table_row(std::iter::once(rig.name.clone()).chain(cells));
         }
         page
     }
@@ -113,7 +108,6 @@ fn about(design: &RigDesign, evidence: &RigEvidence) -> String {
     )
 }
 
-/// Columns of the table of series.
 const HEADER: &str = "rig,friction,push_n,gap_scatter_m,radius_spread,taps,speed_m_s,shots,incident_tof_s,\
     incident_spread_s,reflected_tof_s,reflected_spread_s,rebound_m_s,rebound_spread_m_s,\
     gaps_before_m,largest_gap_before_m,gaps_after_m,largest_gap_after_m";

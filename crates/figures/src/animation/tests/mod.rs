@@ -30,7 +30,7 @@ fn units_are_those_asked_for() {
 fn a_title_that_looks_like_a_part_of_the_page_stays_a_title() {
     let title = "@SCRIPT@ and @TITLE@ and \"@DATA@\"";
     let page = Animation { title: title.into(), ..moving(2, 3) }.html();
-    let shown = crate::draw::escape(title);
+    let shown = crate::files::escape(title);
     assert_eq!(page.matches(&shown).count(), 2, "{page}");
     assert_eq!(page.matches("const data =").count(), 1);
 }
@@ -61,4 +61,21 @@ fn missing_and_infinite_data_still_make_a_page() {
         let page = Animation::new(times, &nan, &nan, &[f64::NAN]).html();
         assert!(!page.contains("NaN,") && page.contains("</html>"));
     }
+}
+
+#[test]
+fn quantised_values_keep_the_range_to_half_a_step() {
+    let rows = vec![vec![-2.0, 0.1], vec![0.7, 5.0]];
+    let (levels, (lo, hi)) = quantised(&rows);
+    let step = (hi - lo) / 65535.0;
+    for (level, value) in levels.iter().zip(rows.iter().flatten()) {
+        // Half a quantum, and a little for rounding.
+        assert!((lo + f64::from(*level) * step - value).abs() <= 0.500001 * step);
+    }
+}
+
+#[test]
+fn resampling_passes_over_what_is_not_finite() {
+    let found = resampled(&[0.0, 1.0, 2.0], &[0.0, f64::NAN, 4.0], &[0.0, 1.0, 2.0, 9.0]);
+    assert_eq!(found, [0.0, 2.0, 4.0, 4.0]);
 }

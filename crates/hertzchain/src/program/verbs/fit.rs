@@ -3,7 +3,6 @@
 mod pictures;
 mod pulses;
 mod report;
-mod uncertainty;
 
 use crate::fit::{self, FitResult, Inferred, More};
 use crate::inference;
@@ -90,16 +89,16 @@ fn write_inferred(
 ) -> Result<(), Failure> {
     folder.write(FIT, format!("{all:#}\n").as_bytes())?;
     folder.tables(tables)?;
-    folder.figure("singular-values", &uncertainty::singular_values(fit_result))?;
+    folder.figure("singular-values", &pictures::singular_values(fit_result))?;
     match &fit_result.more {
         More::Nothing => {}
         More::Profiles(profiles) => {
-            folder.figure("profiles", &uncertainty::profiles(fit_result, profiles))?;
+            folder.figure("profiles", &pictures::profiles(fit_result, profiles))?;
         }
         More::Sampled(sampled) => {
             folder.write(fit::CHAIN, &fit::saved(&sampled.chain)?)?;
             if let Ok(posterior) = &sampled.posterior {
-                folder.figure("corner", &uncertainty::corner(fit_result, posterior))?;
+                folder.figure("corner", &pictures::corner(fit_result, posterior))?;
             }
         }
     }

@@ -1,6 +1,6 @@
 //! `hertzchain merge`: shards of several machines put together.
 
-use super::sweep::{reported, shard};
+use super::sweep;
 use crate::program::arguments::Merge as Arguments;
 use crate::program::print::print;
 use crate::program::{Failure, Folder};
@@ -13,7 +13,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folders: Vec<&Path> = arguments.folders.iter().map(AsRef::as_ref).collect();
     match folders.iter().find(|folder| folder.join(CAMPAIGN_FILE).is_file()) {
         Some(folder) => campaign(folder, &folders, &arguments.out),
-        None => sweep(&folders, arguments),
+        None => merge_sweep(&folders, arguments),
     }
 }
 
@@ -31,13 +31,13 @@ fn campaign(first: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure> 
     ))
 }
 
-fn sweep(folders: &[&Path], arguments: &Arguments) -> Result<(), Failure> {
+fn merge_sweep(folders: &[&Path], arguments: &Arguments) -> Result<(), Failure> {
     let part = BatchResult::gather(folders)?;
-    let folder = Folder::open(&arguments.out, &[reported::SWEEP], arguments.force)?;
-    shard::report_warnings(&part);
-    reported::show(&part)?;
-    reported::write(folder, &part)?;
-    match reported::nothing(&part) {
+    let folder = Folder::open(&arguments.out, &[sweep::SWEEP], arguments.force)?;
+    sweep::report_warnings(&part);
+    sweep::print_table(&part)?;
+    sweep::write(folder, &part)?;
+    match sweep::nothing(&part) {
         true => Err(Failure::User("no speed gave a shot".into())),
         false => Ok(()),
     }

@@ -61,7 +61,6 @@ pub(super) fn residuals(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
     })
 }
 
-/// Relative accuracy of a curve's ToFs.
 fn accuracy(curve: &Curve) -> f64 {
     curve.points.iter().map(|p| p.accuracy_reached).fold(0.0, f64::max)
 }

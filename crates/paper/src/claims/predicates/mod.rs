@@ -62,7 +62,6 @@ pub(crate) fn find(name: &str) -> Option<Predicate<Evidence>> {
     row.map(|(_, predicate)| *predicate)
 }
 
-/// The curves of a claim's cases, if none is missing.
 fn curves<'a>(claim: &Claim, evidence: &'a Evidence) -> Option<Vec<&'a Curve>> {
     let curves = claim.cases.iter().map(|case| evidence.curve(case));
     let curves: Option<Vec<_>> = curves.collect();
@@ -82,10 +81,23 @@ fn branches(claim: &Claim) -> Vec<TofBranch> {
     TofBranch::BOTH.into_iter().filter(named).collect()
 }
 
-/// The shots of a curve at the speeds of a claim.
 fn within<'a>(claim: &Claim, curve: &'a Curve) -> impl Iterator<Item = &'a ShotPoint> {
     let speeds = claim.from_m_s..=claim.to_m_s;
     curve.points.iter().filter(move |p| speeds.contains(&p.speed_m_s))
+}
+
+/// Compares every curve of a claim's cases.
+fn each_curve(
+    claim: &Claim,
+    evidence: &Evidence,
+    mut compare: impl FnMut(&mut Comparisons, &Curve),
+) -> ClaimFinding {
+    let Some(curves) = curves(claim, evidence) else {
+        return missing();
+    };
+    let mut comparisons = Comparisons::default();
+    curves.into_iter().for_each(|curve| compare(&mut comparisons, curve));
+    comparisons.finding()
 }
 
 /// Compares every shot of a claim's cases at its speeds.
@@ -94,16 +106,9 @@ fn each_point(
     evidence: &Evidence,
     mut compare: impl FnMut(&mut Comparisons, &Curve, &ShotPoint),
 ) -> ClaimFinding {
-    let Some(curves) = curves(claim, evidence) else {
-        return missing();
-    };
-    let mut comparisons = Comparisons::default();
-    for curve in curves {
-        for p in within(claim, curve) {
-            compare(&mut comparisons, curve, p);
-        }
-    }
-    comparisons.finding()
+    each_curve(claim, evidence, |comparisons, curve| {
+        within(claim, curve).for_each(|p| compare(comparisons, curve, p));
+    })
 }
 
 fn place(curve: &Curve, p: &ShotPoint) -> String {
@@ -189,11 +194,7 @@ fn differences(p: &ShotPoint, evidence: &Evidence) -> String {
 /// The scatter of the striker's speed makes the reflected ToF scatter more
 /// than the incident one: ratio of the two |dT/dv| above the threshold.
 fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
-    let Some(curves) = curves(claim, evidence) else {
-        return missing();
-    };
-    let mut comparisons = Comparisons::default();
-    for curve in curves {
+    each_curve(claim, evidence, |comparisons, curve| {
         let [incident, reflected] = TofBranch::BOTH.map(|branch| {
             let slopes = curve.slopes_s2_m(branch).into_iter();
             slopes.zip(curve.slope_accuracies(branch))
@@ -206,8 +207,7 @@ fn return_scatters_more(claim: &Claim, evidence: &Evidence) -> ClaimFinding {
                 format!("{}, reflected ToF ± {us:.2} µs", place(curve, p))
             });
         }
-    }
-    comparisons.finding()
+    })
 }
 
 /// The gaps between beads, less the overlaps, exceed the threshold when the
@@ -290,11 +290,7 @@ type Quantity = (&'static str, fn(&ShotPoint) -> (f64, f64));
 /// Logarithms rise between neighbouring speeds; the value is the smallest d ln(quantity)/d
 /// ln(speed), its accuracy that of both ends over the step in ln(speed).
 fn rises(claim: &Claim, evidence: &Evidence, quantities: &[Quantity]) -> ClaimFinding {
-    let Some(curves) = curves(claim, evidence) else {
-        return missing();
-    };
-    let mut comparisons = Comparisons::default();
-    for curve in curves {
+    each_curve(claim, evidence, |comparisons, curve| {
         for (name, log) in quantities {
             for pair in curve.points.windows(2) {
                 let (low, high) = (&pair[0], &pair[1]);
@@ -306,8 +302,7 @@ fn rises(claim: &Claim, evidence: &Evidence, quantities: &[Quantity]) -> ClaimFi
                 });
             }
         }
-    }
-    comparisons.finding()
+    })
 }
 
 /// Measured points lie within the threshold times their standard error of the model's; not decidable

@@ -122,7 +122,6 @@ fn turn_accuracy(three: [&Placed; 3], at_exact: f64) -> f64 {
     (0..3).map(moved).sum()
 }
 
-/// Absolute accuracy of the difference of two ratios.
 fn step_accuracy(low: &TofRatio, high: &TofRatio) -> f64 {
     low.accuracy() + high.accuracy()
 }
@@ -214,7 +213,6 @@ fn crossing(low: &TofRatio, high: &TofRatio) -> (f64, f64) {
     (speed, speed * (from_tofs + 0.5 * from_chord))
 }
 
-/// Speeds of crossings with their accuracy.
 type Crossings = Vec<(f64, f64)>;
 
 /// All crossings of 1, the upward ones first.

@@ -59,7 +59,6 @@ fn title(table: &TableFit<'_>, of_several: bool) -> String {
     )
 }
 
-/// That speeds seem to be in another unit.
 fn unit(fit_result: &FitResult) -> String {
     fit_result.unit_of_speed.as_ref().map_or(String::new(), |(file, unit)| {
         format!(
@@ -69,7 +68,6 @@ fn unit(fit_result: &FitResult) -> String {
     })
 }
 
-/// Correlations and how well the data are described.
 pub(super) fn described(fit_result: &Inferred) -> String {
     correlations(fit_result)
         + &goodness(&fit_result.goodness)
@@ -94,7 +92,6 @@ fn robust(fit_result: &Inferred) -> String {
     )
 }
 
-/// How far derivatives by two step sizes agree.
 fn derivatives(fit_result: &Inferred) -> String {
     let worst = fit_result.fit.jacobian.worst_disagreement();
     format!("Derivatives by two step sizes agree within {}\n", percent(worst))
