@@ -242,6 +242,23 @@ macro_rules! table {
 }
 pub(crate) use table;
 
+/// A table whose keys go with the value of its tag: `"value" { keys }`, keys as in `table!`.
+macro_rules! variants {
+    ($title:literal $tag:ident; $($option:literal { $($keys:tt)* })*) => {
+        Variants {
+            title: $title,
+            tag: stringify!($tag),
+            options: &[$((
+                $option,
+                table! {
+                    concat!($title, " with ", stringify!($tag), " = \"", $option, "\"");
+                    $($keys)*
+                },
+            ),)*],
+        }
+    };
+}
+
 /// An enum whose options are names in a file; the first is the default.
 macro_rules! choice {
     ($(#[$meta:meta])* $Type:ident {
@@ -318,101 +335,59 @@ static STRIKER: Fields = table! { "[striker]";
     material: Text, "name of a material";
 };
 
-static DRIVEN: Variants = Variants {
-    title: "[driven]",
-    tag: "motion",
-    options: &[
-        (
-            "sine",
-            table! { "[driven] with motion = \"sine\"";
-                amplitude(Always): DISPLACEMENT, "largest displacement";
-                frequency(Always): positive("Hz"), "frequency";
-                radius: positive("m"), "radius of the driven body; default: as bead 1";
-                material: Text, "name of a material";
-            },
-        ),
-        (
-            "pulse",
-            table! { "[driven] with motion = \"pulse\"";
-                amplitude(Always): DISPLACEMENT, "largest displacement";
-                duration(Always): positive("s"), "duration of the push";
-                radius: positive("m"), "radius of the driven body; default: as bead 1";
-                material: Text, "name of a material";
-            },
-        ),
-        (
-            "table",
-            table! { "[driven] with motion = \"table\"";
-                times: Quantities("s"), "times, increasing";
-                positions: Quantities("m"), "positions, one a time";
-                file: Text, "CSV file with columns time_s,position_m, beside this file";
-                radius: positive("m"), "radius of the driven body; default: as bead 1";
-                material: Text, "name of a material";
-            },
-        ),
-    ],
+static DRIVEN: Variants = variants! { "[driven]" motion;
+    "sine" {
+        amplitude(Always): DISPLACEMENT, "largest displacement";
+        frequency(Always): positive("Hz"), "frequency";
+        radius: positive("m"), "radius of the driven body; default: as bead 1";
+        material: Text, "name of a material";
+    }
+    "pulse" {
+        amplitude(Always): DISPLACEMENT, "largest displacement";
+        duration(Always): positive("s"), "duration of the push";
+        radius: positive("m"), "radius of the driven body; default: as bead 1";
+        material: Text, "name of a material";
+    }
+    "table" {
+        times: Quantities("s"), "times, increasing";
+        positions: Quantities("m"), "positions, one a time";
+        file: Text, "CSV file with columns time_s,position_m, beside this file";
+        radius: positive("m"), "radius of the driven body; default: as bead 1";
+        material: Text, "name of a material";
+    }
 };
 
-static FAR_END: Variants = Variants {
-    title: "[far_end]",
-    tag: "kind",
-    options: &[
-        (
-            "half-bead",
-            table! { "[far_end] with kind = \"half-bead\"";
-                radius: positive("m"), "radius of the half-bead; default: as bead N";
-                material: Text, "name of a material";
-            },
-        ),
-        (
-            "plane",
-            table! { "[far_end] with kind = \"plane\"";
-                material: Text, "name of a material";
-            },
-        ),
-        (
-            "stop",
-            table! { "[far_end] with kind = \"stop\"";
-                mass(Always): positive("kg"), "mass of the stop";
-                radius: positive("m"), "radius of the half-bead; default: as bead N";
-                material: Text, "name of a material";
-            },
-        ),
-        (
-            "plane-stop",
-            table! { "[far_end] with kind = \"plane-stop\"";
-                mass(Always): positive("kg"), "mass of the stop";
-                material: Text, "name of a material";
-            },
-        ),
-        (
-            "periodic",
-            table! { "[far_end] with kind = \"periodic\"";
-                force: not_negative("N"), "static force around the ring; default 0";
-            },
-        ),
-        ("free", table! { "[far_end] with kind = \"free\""; }),
-    ],
+static FAR_END: Variants = variants! { "[far_end]" kind;
+    "half-bead" {
+        radius: positive("m"), "radius of the half-bead; default: as bead N";
+        material: Text, "name of a material";
+    }
+    "plane" {
+        material: Text, "name of a material";
+    }
+    "stop" {
+        mass(Always): positive("kg"), "mass of the stop";
+        radius: positive("m"), "radius of the half-bead; default: as bead N";
+        material: Text, "name of a material";
+    }
+    "plane-stop" {
+        mass(Always): positive("kg"), "mass of the stop";
+        material: Text, "name of a material";
+    }
+    "periodic" {
+        force: not_negative("N"), "static force around the ring; default 0";
+    }
+    "free" {}
 };
 
-static NEAR_END: Variants = Variants {
-    title: "[near_end]",
-    tag: "push",
-    options: &[
-        (
-            "constant",
-            table! { "[near_end] with push = \"constant\"";
-                force(Always): not_negative("N"), "force on bead 1";
-            },
-        ),
-        (
-            "spring",
-            table! { "[near_end] with push = \"spring\"";
-                force(Always): not_negative("N"), "force on bead 1 at rest";
-                stiffness(Always): not_negative("N/m"), "stiffness of the spring";
-            },
-        ),
-    ],
+static NEAR_END: Variants = variants! { "[near_end]" push;
+    "constant" {
+        force(Always): not_negative("N"), "force on bead 1";
+    }
+    "spring" {
+        force(Always): not_negative("N"), "force on bead 1 at rest";
+        stiffness(Always): not_negative("N/m"), "stiffness of the spring";
+    }
 };
 
 static TRACK: Fields = table! { "[track]";

@@ -92,7 +92,7 @@ impl Liquid {
     }
 
     /// What it gives to the parameter of a law with this name.
-    pub(crate) fn value(&self, parameter: &str) -> Option<f64> {
+    pub fn value(&self, parameter: &str) -> Option<f64> {
         match parameter {
             "viscosity" => self.dynamic_viscosity_pa_s(),
             "pressure_viscosity" => self.pressure_viscosity_per_pa,

@@ -27,6 +27,7 @@ fn a_posterior_that_is_killed_goes_on_to_the_walkers_of_one_that_was_not() {
     };
     let chain = |out: &str| fs::read(folder.join(out).join("chain.json")).unwrap();
     assert!(posterior("whole", "60", &[]).status().is_ok());
+    assert!(folder.join("whole/fit.json").exists(), "walkers saved on the way are the run's own");
     assert!(posterior("broken", "20", &[]).status().is_ok());
     let begun = chain("broken");
     for delay_ms in [50, 400] {

@@ -1,5 +1,6 @@
 //! Whether speeds are in another unit than m/s, by what times of flight they make.
 
+use super::candidates::median;
 use super::model::Speeds;
 use super::problem::MeasuredCurve;
 use crate::data::Observable;
@@ -35,8 +36,6 @@ impl MeasuredCurve {
             Some((measured / predicted[Observable::Incident.index()]?).ln())
         };
         let rows = self.data.rows.iter().zip(&curve);
-        let mut misses: Vec<f64> = rows.filter_map(miss).collect();
-        misses.sort_by(f64::total_cmp);
-        misses.get(misses.len() / 2).copied()
+        median(rows.filter_map(miss).collect())
     }
 }

@@ -38,14 +38,7 @@ fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
     let wet = [".film_entrained.", ".film_drained.", ".capillary_bridge."];
     let parameter = wet.into_iter().find_map(|law| Some(path.split_once(law)?.1));
     if let Some(parameter) = parameter {
-        let liquid = experiment.liquid()?;
-        return match parameter {
-            "viscosity" => liquid.dynamic_viscosity_pa_s(),
-            "pressure_viscosity" => liquid.pressure_viscosity_per_pa,
-            "surface_tension" => liquid.surface_tension_n_m,
-            "volume" => liquid.volume_m3,
-            _ => None,
-        };
+        return experiment.liquid()?.value(parameter);
     }
     let reference = experiment.reference(path)?;
     reference.own_value.filter(|value| *value > 0.0)

@@ -92,9 +92,7 @@ impl PulseProblem {
     pub fn with_parameters(mut self, parameters: Vec<Parameter>) -> Result<Self, InferError> {
         parameters.iter().try_for_each(Parameter::check)?;
         if parameters.is_empty() {
-            return Err(InferError::Input(
-                "no parameter is free: name some, such as eta,B,sensor_gain".into(),
-            ));
+            return Err(nothing_free());
         }
         self.parameters = parameters;
         Ok(self)
@@ -156,9 +154,7 @@ impl PulseProblem {
             return Err(no_records());
         }
         if self.parameters.is_empty() {
-            return Err(InferError::Input(
-                "no parameter is free: name some, such as eta,B,sensor_gain".into(),
-            ));
+            return Err(nothing_free());
         }
         let start: Vec<f64> = self.parameters.iter().map(|p| p.start).collect();
         let mut passing = Vec::new();
@@ -278,6 +274,10 @@ impl PulseProblem {
         }
         None
     }
+}
+
+fn nothing_free() -> InferError {
+    InferError::Input("no parameter is free: name some, such as eta,B,sensor_gain".into())
 }
 
 fn no_records() -> InferError {
