@@ -130,11 +130,7 @@ const SAVE_EVERY: Duration = Duration::from_secs(10);
 
 impl<'a> Saving<'a> {
     pub(super) fn new(arguments: &'a Arguments) -> Self {
-        Self {
-            folder: arguments.out.as_deref(),
-            saved: None,
-            most_steps: arguments.steps,
-        }
+        Self { folder: arguments.out.as_deref(), saved: None, most_steps: arguments.steps }
     }
 
     pub(super) fn seen(&mut self, chain: &Chain) -> Result<(), Failure> {
