@@ -6,6 +6,7 @@ use crate::signal::Pulse;
 use crate::signal::linear::{
     LinearSolution, LocalPolynomial, NormalEquations, Row, differentiated, powers,
 };
+use crate::signal::statistics::{mean, squares_about_mean};
 
 /// Highest degree of the baseline: over a shot of 3 ms mains hum of 20 % is a cubic to 0.1 %.
 const HIGHEST: usize = 3;
@@ -70,7 +71,7 @@ impl Detrended {
         let level = best.solution.values[0];
         let own = |at: usize| samples[at] - (background.value(&best, at.min(end)) - level);
         if let Some(calm) = without_hum {
-            let shift = level - calm[first..quiet_end].iter().sum::<f64>() / quiet.len() as f64;
+            let shift = level - mean(&calm[first..quiet_end]);
             let mut without: Vec<f64> = calm.iter().map(|sample| sample + shift).collect();
             (first..=end).for_each(|at| without[at] = own(at));
             return Some(Self { samples: without, first, half, fit: best });
@@ -141,9 +142,7 @@ impl Background<'_> {
     }
 
     fn value(&self, fit: &BackgroundFit, at: usize) -> f64 {
-        let terms = fit.degree + 1 + usize::from(fit.step.is_some());
-        let row = self.row(at, fit.degree, fit.step);
-        row.iter().zip(fit.solution.values).take(terms).map(|(term, c)| term * c).sum()
+        fit.solution.value(&self.row(at, fit.degree, fit.step))
     }
 
     fn smooth(&self) -> Option<BackgroundFit> {
@@ -208,8 +207,7 @@ fn drifts(quiet: &[f64], least: f64) -> bool {
     let Some(cubic) = LocalPolynomial::through(&means, 0.0, middle, middle, HIGHEST) else {
         return false;
     };
-    let level = means.iter().sum::<f64>() / PARTS as f64;
-    let all: f64 = means.iter().map(|mean| (mean - level).powi(2)).sum();
+    let all = squares_about_mean(&means);
     let left = cubic.residual.powi(2) * cubic.freedom;
     let explained = all - left;
     explained > PARTS as f64 * least * least

@@ -1,7 +1,7 @@
 //! Hum in records much longer than a shot, where it is as high as pulses and wider.
 
 use crate::signal::linear::{NormalEquations, Row, differentiated, powers};
-use crate::signal::statistics::{median, median_and_spread};
+use crate::signal::statistics::{mean, median, median_and_spread, squares_about_mean};
 use crate::signal::{Found, Pulse};
 
 /// Half the stretch in s that one cubic follows: a quarter of a period of 250 Hz, many pulses wide.
@@ -27,8 +27,7 @@ const DEGREE: usize = 3;
 /// A record less its hum, which keeps the level it began with; `None` where it is too short or has none.
 pub(super) fn without_hum(samples: &[f64], interval_s: f64) -> Option<Vec<f64>> {
     let length = ((HALF_S / interval_s) as usize / MEANS).max(1);
-    let means: Vec<f64> =
-        samples.chunks_exact(length).map(|part| part.iter().sum::<f64>() / length as f64).collect();
+    let means: Vec<f64> = samples.chunks_exact(length).map(mean).collect();
     if means.len() < SHORTEST * MEANS || !wanders(&means) {
         return None;
     }
@@ -66,8 +65,8 @@ fn hum_at(means: &[f64], centre: usize) -> Option<[f64; 2]> {
         for ((i, mean), weight) in near.iter().enumerate().zip(&weights) {
             normal.add(&row(i).map(|term| term * weight), mean * weight);
         }
-        let cubic = normal.solve()?.values;
-        let value = |row: &Row| row.iter().zip(cubic).take(DEGREE + 1).map(|(r, c)| r * c).sum();
+        let cubic = normal.solve()?;
+        let value = |row: &Row| cubic.value(row);
         let off: Vec<f64> = near.iter().enumerate().map(|(i, y)| y - value(&row(i))).collect();
         found = [value(&powers(0.0)), value(&differentiated(&powers(0.0))) / CUBICS as f64];
         let (_, spread) = median_and_spread(&off)?;
@@ -99,10 +98,8 @@ pub(super) fn is_hum(found: &Found, samples: &[f64], without: &[f64], interval_s
         return false;
     }
     let variance = |samples: &[f64]| {
-        let means = samples[..end].chunks_exact(end / PARTS);
-        let means: Vec<f64> = means.map(|p| p.iter().sum::<f64>() / p.len() as f64).collect();
-        let level = means.iter().sum::<f64>() / means.len() as f64;
-        means.iter().map(|mean| (mean - level).powi(2)).sum::<f64>()
+        let means = samples[..end].chunks_exact(end / PARTS).map(mean);
+        squares_about_mean(&means.collect::<Vec<_>>())
     };
     variance(samples) > SIGNIFICANT * variance(without)
 }

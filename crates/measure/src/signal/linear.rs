@@ -97,6 +97,11 @@ impl<const N: usize> NormalEquations<N> {
 }
 
 impl<const N: usize> LinearSolution<N> {
+    /// Σ row_k · parameter_k.
+    pub(crate) fn value(&self, row: &[f64; N]) -> f64 {
+        row.iter().zip(self.values).take(self.size).map(|(term, c)| term * c).sum()
+    }
+
     /// Variance of Σ row_k · parameter_k for unit noise.
     pub(crate) fn variance(&self, row: &[f64; N]) -> f64 {
         let covariances = self.covariance_with(row);

@@ -1,6 +1,6 @@
 //! Spikes: one or two samples that stand out of a signal that is smooth for its noise.
 
-use crate::signal::linear::{NormalEquations, Row, powers};
+use crate::signal::linear::{NormalEquations, powers};
 use crate::signal::statistics::{NORMAL_MAD, median};
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -138,11 +138,7 @@ fn interpolate(
         normal.add(&row(*member), samples[*member]);
     }
     let fit = normal.solve()?;
-    let value = |row: &Row| -> f64 {
-        let terms = row.iter().zip(&fit.values).take(DEGREE + 1);
-        terms.map(|(power, coefficient)| power * coefficient).sum()
-    };
-    let miss = |member: &usize| (samples[*member] - value(&row(*member))).powi(2);
+    let miss = |member: &usize| (samples[*member] - fit.value(&row(*member))).powi(2);
     let squares: f64 = members.iter().map(miss).sum();
     // Residuals of members left out one by one follow from one fit: r²/(1 − h).
     let studentised = |member: &usize| {
@@ -153,7 +149,9 @@ fn interpolate(
     let (worst, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let own = row(at);
     let deviation = (squares / freedom).sqrt().max(noise);
-    let interpolated =
-        Interpolated { value: value(&own), error: deviation * (1.0 + fit.variance(&own)).sqrt() };
+    let interpolated = Interpolated {
+        value: fit.value(&own),
+        error: deviation * (1.0 + fit.variance(&own)).sqrt(),
+    };
     Some((interpolated, (ratio > STANDS_OUT * STANDS_OUT).then_some(worst)))
 }

@@ -32,6 +32,15 @@ pub fn median(values: &[f64]) -> Option<f64> {
     Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+pub(crate) fn squares_about_mean(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    values.iter().map(|value| (value - mean).powi(2)).sum()
+}
+
 pub(crate) fn median_and_spread(values: &[f64]) -> Option<(f64, f64)> {
     let centre = median(values)?;
     let far: Vec<f64> = values.iter().map(|x| (x - centre).abs()).collect();
