@@ -212,13 +212,10 @@ impl StoredArray {
     fn strides(&self) -> Vec<usize> {
         let mut strides = vec![0; self.shape.len()];
         let mut stride = self.number.width();
-        let mut set = |axis: usize| {
+        for nth in 0..self.shape.len() {
+            let axis = if self.fortran { nth } else { self.shape.len() - 1 - nth };
             strides[axis] = stride;
             stride = stride.saturating_mul(self.shape[axis]);
-        };
-        match self.fortran {
-            true => (0..self.shape.len()).for_each(&mut set),
-            false => (0..self.shape.len()).rev().for_each(&mut set),
         }
         strides
     }

@@ -5,7 +5,7 @@ use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays;
 use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{ReadOptions, chosen};
-use crate::records::read::Raw;
+use crate::records::read::{Raw, or_error};
 use crate::records::stored::{
     Head, HeaderBytes, NumberKind, SampleRuns, StoredChannel, StoredNumber,
 };
@@ -24,8 +24,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let several = groups.len() > 1;
     let mut records: Vec<Raw> = Vec::new();
     for (number, (group, channels)) in (1..).zip(groups) {
-        let opened = open_group(file, group, channels, options);
-        let opened = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
+        let opened = or_error(open_group(file, group, channels, options));
         records.push(Box::new(opened.map(move |record| {
             let mut record = record?;
             record.shot = record.shot.or(several.then_some(number));

@@ -3,9 +3,7 @@
 use std::ops::Range;
 
 use crate::signal::Pulse;
-use crate::signal::linear::{
-    LinearSolution, LocalPolynomial, NormalEquations, Row, differentiated, powers,
-};
+use crate::signal::linear::{LinearSolution, LocalPolynomial, Row, differentiated, powers};
 use crate::signal::statistics::{mean, squares_about_mean};
 
 /// Highest degree of the baseline: over a shot of 3 ms mains hum of 20 % is a cubic to 0.1 %.
@@ -173,10 +171,9 @@ impl Background<'_> {
 
     fn fit(&self, degree: usize, step: Option<usize>) -> Option<BackgroundFit> {
         let terms = degree + 1 + usize::from(step.is_some());
-        let mut normal = NormalEquations::new(terms);
         let members = self.members();
-        members.clone().for_each(|at| normal.add(&self.row(at, degree, step), self.samples[at]));
-        let solution = normal.solve()?;
+        let equation = |at: usize| (self.row(at, degree, step), self.samples[at]);
+        let solution = LinearSolution::of(terms, members.clone().map(equation))?;
         let mut found = BackgroundFit { solution, degree, step, noise: 0.0, criterion: 0.0 };
         let squares = members.clone().map(|at| (self.samples[at] - self.value(&found, at)).powi(2));
         let (squares, count) = (squares.sum::<f64>(), members.count() as f64);

@@ -214,7 +214,8 @@ fn with_drift(
     interval_s: f64,
 ) -> Picks {
     let last = drifts.len() - 1;
-    let mut widen = |pick: &mut Picked, kind: PulseKind| {
+    for kind in PulseKind::ALL {
+        let Some(mut pick) = picks.pulse(kind) else { continue };
         let which = usize::from(kind == PulseKind::Wall);
         let (drift, tones) = (&drifts[which.min(last)], &tones[which.min(last)]);
         if drift.is_some() || tones.is_some() {
@@ -226,11 +227,9 @@ fn with_drift(
             if let Some(samples) = &mut samples[kind as usize] {
                 samples.of_drift_s = error_s;
             }
+            picks.set(kind, pick);
         }
-    };
-    widen(&mut picks.incident, PulseKind::Incident);
-    widen(&mut picks.wall, PulseKind::Wall);
-    picks.reflected.iter_mut().for_each(|back| widen(back, PulseKind::Reflected));
+    }
     picks
 }
 

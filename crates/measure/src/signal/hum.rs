@@ -1,6 +1,6 @@
 //! Hum in records much longer than a shot, where it is as high as pulses and wider.
 
-use crate::signal::linear::{NormalEquations, Row, differentiated, powers};
+use crate::signal::linear::{LinearSolution, Row, differentiated, powers};
 use crate::signal::statistics::{mean, median, median_and_spread, squares_about_mean};
 use crate::signal::{Found, Pulse};
 
@@ -61,11 +61,10 @@ fn hum_at(means: &[f64], centre: usize) -> Option<[f64; 2]> {
     let mut weights = vec![1.0; near.len()];
     let mut found = [0.0; 2];
     for round in 0..ROUNDS[0] + ROUNDS[1] {
-        let mut normal = NormalEquations::new(DEGREE + 1);
-        for ((i, mean), weight) in near.iter().enumerate().zip(&weights) {
-            normal.add(&row(i).map(|term| term * weight), mean * weight);
-        }
-        let cubic = normal.solve()?;
+        let weighted = near.iter().enumerate().zip(&weights);
+        let equations =
+            weighted.map(|((i, mean), weight)| (row(i).map(|x| x * weight), mean * weight));
+        let cubic = LinearSolution::of(DEGREE + 1, equations)?;
         let value = |row: &Row| cubic.value(row);
         let off: Vec<f64> = near.iter().enumerate().map(|(i, y)| y - value(&row(i))).collect();
         found = [value(&powers(0.0)), value(&differentiated(&powers(0.0))) / CUBICS as f64];

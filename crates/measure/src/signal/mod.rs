@@ -58,5 +58,6 @@ pub use self::{
     },
 };
 pub(crate) use self::{
-    filters::invert_high_pass, flight::mean_systematic, pick::pool, statistics::ratios_at_common,
+    filters::invert_high_pass, flight::mean_systematic, pick::pool, statistics::extremes,
+    statistics::ratios_at_common,
 };

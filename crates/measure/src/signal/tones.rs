@@ -1,7 +1,7 @@
 //! Sines under a shot, harmonics of the mains or a supply's ripple, as the record before it shows them.
 
 use crate::signal::drift::time_error;
-use crate::signal::linear::{LinearSolution, NormalEquations};
+use crate::signal::linear::LinearSolution;
 use crate::signal::statistics::{mean, median};
 use std::f64::consts::{LN_2, PI};
 
@@ -185,10 +185,9 @@ fn row(tones: &[Tone], u: f64) -> Unknowns {
 }
 
 fn solved(values: &[f64], tones: &[Tone], size: usize) -> Option<LinearSolution<UNKNOWNS>> {
-    let mut normal = NormalEquations::new(size);
     let rows = values.iter().enumerate();
-    rows.for_each(|(i, value)| normal.add(&row(tones, place(i, values.len())), *value));
-    normal.solve()
+    let equations = rows.map(|(i, value)| (row(tones, place(i, values.len())), *value));
+    LinearSolution::of(size, equations)
 }
 
 /// Fits the cubic and the sines' parts at their cycles; returns what is left of the means.

@@ -463,7 +463,6 @@ impl BellData {
         Some(LocalPolynomial {
             centre,
             half,
-            degree: self.degree,
             solution,
             residual: (squares / freedom).sqrt(),
             freedom,
