@@ -30,7 +30,6 @@ mod drift;
 mod filters;
 mod find;
 mod flight;
-mod hum;
 mod linear;
 mod pick;
 mod power_law;
