@@ -1,14 +1,15 @@
 //! Shots into curves: means a speed, ratios, power laws.
 
-use crate::Shot;
 use crate::ambiguous::resolve_ambiguous;
 use crate::correlation::{Pairs, correlation, of_ratios, shared_s2};
 use crate::signal::{
-    Estimate, FitError, Flight, Point, PowerLaw, PulseKind, Ratio, Summary, groups,
-    mean_systematic, power_law, power_law_both_errors, ratios_at_common, summary,
+    Estimate, FitError, Flight, Picked, Point, PowerLaw, PulseKind, Ratio, Summary, groups,
+    mean_systematic, pool, power_law, power_law_both_errors, ratios_at_common, summary,
     without_systematic,
 };
+use crate::{Example, Measurement, Shot};
 use indexmap::IndexMap;
+use rayon::prelude::*;
 
 /// How shots are grouped into curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,7 +126,7 @@ pub struct Curves {
     pub keep_dubious: bool,
     /// Numbers from 0 of shots that count by themselves, but in no mean: which maximum is that of their
     /// incident or wall pulse is open to all shots of their speed.
-    pub(crate) undecided: Vec<usize>,
+    undecided: Vec<usize>,
 }
 
 /// How times of flight change with speed between neighbouring speeds: a Hertz chain's exponent,
@@ -188,13 +189,13 @@ impl Curves {
 
 /// The speed by which a shot is grouped: the programmed one, if it is known.
 #[derive(Clone, Copy)]
-pub(crate) struct GroupSpeed {
+struct GroupSpeed {
     m_s: f64,
     is_programmed: bool,
 }
 
 impl GroupSpeed {
-    pub(crate) fn new(shot: &Shot) -> Option<Self> {
+    fn new(shot: &Shot) -> Option<Self> {
         let own = shot.true_speed().map(|speed| speed.value);
         Some(Self {
             m_s: shot.programmed_speed_m_s.or(own)?,
@@ -254,11 +255,7 @@ impl Case {
 }
 
 /// Shots of one programmed speed, then those that have none by their speeds.
-pub(crate) fn grouped<T: Copy>(
-    all: &[T],
-    speed: impl Fn(&T) -> GroupSpeed,
-    gap_m_s: f64,
-) -> Vec<Vec<T>> {
+fn grouped<T: Copy>(all: &[T], speed: impl Fn(&T) -> GroupSpeed, gap_m_s: f64) -> Vec<Vec<T>> {
     let by = |programmed: bool, gap_m_s: f64| -> Vec<Vec<T>> {
         let of = all.iter().filter(|one| speed(one).is_programmed == programmed);
         let of: Vec<T> = of.copied().collect();
@@ -497,4 +494,73 @@ fn ratios(cases: &[Case], grouping: &Grouping) -> Vec<WetOverDry> {
         }
     })
     .collect()
+}
+
+impl Measurement {
+    /// Reduces shots to curves, after their maxima are picked again with one shape for all shots of a
+    /// case and a speed that count. Noise leaves the shape of one pulse open and that of many less: at
+    /// 40 dB times of 20 shots are two to three times as exact as each alone.
+    pub fn curves(&mut self, grouping: &Grouping) -> Curves {
+        // Names need not tell shots apart.
+        let number = |example: &Example| self.shots.iter().position(|shot| *shot == example.shot);
+        let examples = self.examples.iter().chain(&self.flagged);
+        let numbers: Vec<Option<usize>> = examples.map(number).collect();
+        pick_with_common_shapes(&mut self.shots, grouping);
+        let curves = Curves::of(&self.shots, grouping);
+        self.shots.iter_mut().for_each(|shot| shot.undecided = false);
+        curves.undecided.iter().for_each(|number| self.shots[*number].undecided = true);
+        let examples = self.examples.iter_mut().chain(&mut self.flagged);
+        for (Example { shot, .. }, number) in examples.zip(numbers) {
+            if let Some(number) = number {
+                let Shot { flight, undecided, .. } = &self.shots[number];
+                (shot.flight, shot.undecided) = (flight.clone(), *undecided);
+            }
+        }
+        curves
+    }
+}
+
+/// Picks maxima of all shots of a case and a speed again, as [`Measurement::curves`] does.
+fn pick_with_common_shapes(shots: &mut [Shot], grouping: &Grouping) {
+    let mut cases: IndexMap<&str, Vec<(usize, GroupSpeed)>> = IndexMap::new();
+    for (number, shot) in
+        shots.iter().enumerate().filter(|(_, shot)| shot.own_reasons(false).is_empty())
+    {
+        let speed = GroupSpeed::new(shot).map(|speed| (number, speed));
+        cases.entry(&shot.case).or_default().extend(speed);
+    }
+    let groups = cases.values().flat_map(|case| grouped(case, |one| one.1, grouping.gap_m_s));
+    let groups: Vec<Vec<usize>> =
+        groups.map(|group| group.into_iter().map(|one| one.0).collect()).collect();
+    let picked: Vec<(usize, PulseKind, Picked)> = groups
+        .par_iter()
+        .flat_map_iter(|group| PulseKind::ALL.map(|kind| picked(shots, group, kind)))
+        .flatten_iter()
+        .collect();
+    for (number, kind, picked) in picked {
+        if let Ok(flight) = &mut shots[number].flight {
+            let mut picks = flight.picks;
+            let time_s = picked.time_s - skew_s(flight, kind);
+            picks.set(kind, Picked { time_s, ..picked });
+            *flight = picks.flight().with_interval_error(flight.interval_error);
+        }
+    }
+}
+
+/// New picks of these shots' pulses, on the clock of their channel.
+fn picked(shots: &[Shot], group: &[usize], kind: PulseKind) -> Vec<(usize, PulseKind, Picked)> {
+    let own = |number: &usize| {
+        let shot = &shots[*number];
+        let flight = shot.flight.as_ref().ok()?;
+        let own = flight.picks.pulse(kind)?;
+        let time_s = own.time_s + skew_s(flight, kind);
+        Some((*number, (shot.samples[kind as usize].as_deref()?, Picked { time_s, ..own })))
+    };
+    let (numbers, pulses): (Vec<usize>, Vec<_>) = group.iter().filter_map(own).unzip();
+    let picks = numbers.into_iter().zip(pool(&pulses));
+    picks.filter_map(|(number, picked)| Some((number, kind, picked?))).collect()
+}
+
+fn skew_s(flight: &Flight, kind: PulseKind) -> f64 {
+    if kind == PulseKind::Wall { flight.picks.calibration.skew_s } else { 0.0 }
 }

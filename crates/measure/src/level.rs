@@ -2,8 +2,8 @@
 
 use crate::MeasureError;
 use crate::error::Result;
-use crate::records::{Channel, Record, extremes};
-use crate::signal::median;
+use crate::records::{Channel, Record};
+use crate::signal::{extremes, median};
 use std::collections::VecDeque;
 use std::ops::Range;
 
@@ -143,7 +143,7 @@ pub fn shots_at_level(
     pieces: impl Iterator<Item = Result<Record>>,
     level: Level,
 ) -> impl Iterator<Item = Result<Record>> {
-    AtLevel::new(pieces, level)
+    AtLevel { pieces, level, shots: 0, under_way: None, ready: VecDeque::new() }
 }
 
 struct AtLevel<I> {
@@ -164,10 +164,6 @@ struct UnderWay {
 }
 
 impl<I: Iterator<Item = Result<Record>>> AtLevel<I> {
-    fn new(pieces: I, level: Level) -> Self {
-        Self { pieces, level, shots: 0, under_way: None, ready: VecDeque::new() }
-    }
-
     fn piece(&mut self, piece: Record) -> Result<()> {
         if piece.first_sample == 0 {
             self.finish();
@@ -245,7 +241,7 @@ impl UnderWay {
             return Vec::new();
         };
         if !self.found {
-            let (low, high) = extremes(volts.iter().copied());
+            let (low, high) = extremes(volts);
             self.extremes_v = (self.extremes_v.0.min(low), self.extremes_v.1.max(high));
         }
         self.cutter.feed(volts)

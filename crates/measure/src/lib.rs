@@ -11,7 +11,6 @@ pub mod records;
 pub mod signal;
 
 mod ambiguous;
-mod common_shape;
 mod correlation;
 mod curves;
 mod error;

@@ -4,7 +4,7 @@ use crate::error::file_name;
 use crate::level::shots_at_level;
 use crate::records::{Parts, ReadOptions, Record, Records, read};
 use crate::separation::{Content, content};
-use crate::signal::{Bandwidth, Method, QualityFlag, SignalOptions};
+use crate::signal::{Bandwidth, Estimate, Method, QualityFlag, SignalOptions};
 use crate::{Example, Level, MeasureError, Shot, ShotList};
 use indexmap::IndexMap;
 use rayon::prelude::*;
@@ -253,21 +253,17 @@ impl Measurement {
     ) -> Self {
         let (mut all, mut names) = (Self::default(), Vec::new());
         for (file, of_file) in files {
-            all.append(of_file.clone());
+            all.shots.extend(of_file.shots.iter().cloned());
+            all.samples_held += of_file.samples_held;
+            all.refused.extend(of_file.refused.iter().cloned());
+            for Note { text, files } in &of_file.notes {
+                files.iter().for_each(|file| all.note(text, file));
+            }
+            all.bandwidth = all.bandwidth.or(of_file.bandwidth);
             names.push(file.clone());
         }
         all.unmatched = list.map_or(Vec::new(), |list| list.unmatched(&names, &all.shots));
         all
-    }
-
-    fn append(&mut self, other: Self) {
-        self.shots.extend(other.shots);
-        self.samples_held += other.samples_held;
-        self.refused.extend(other.refused);
-        for Note { text, files } in other.notes {
-            files.iter().for_each(|file| self.note(&text, file));
-        }
-        self.bandwidth = self.bandwidth.or(other.bandwidth);
     }
 
     fn add(&mut self, shots: Vec<Done>, record: &Record, options: &Options) {
@@ -360,7 +356,9 @@ impl Measurement {
         let examples = examples.map(|example| &mut example.shot);
         for shot in shots.into_iter().chain(examples.filter(of_file)) {
             let speed = speeds.get((number(shot) as usize).saturating_sub(1)).copied();
-            shot.set_speed(speed.filter(|speed| speed.is_finite()), options);
+            let speed = speed.filter(|speed| speed.is_finite());
+            shot.speed_m_s = speed.map(|value| Estimate { value, sigma: 0.0 });
+            shot.identify(None, options);
         }
     }
 

@@ -168,12 +168,6 @@ impl Shot {
         }
     }
 
-    /// Sets the speed that its file states, unless the list states one.
-    pub(crate) fn set_speed(&mut self, speed_m_s: Option<f64>, options: &Options) {
-        self.speed_m_s = speed_m_s.map(|value| Estimate { value, sigma: 0.0 });
-        self.identify(None, options);
-    }
-
     /// Whether its times may be of something else than the wave: a clipped pulse or one with a gap,
     /// pulses taken for one another or of several shots, or a missing one.
     pub fn is_dubious(&self) -> bool {

@@ -55,12 +55,6 @@ pub fn write_shots(shots: &[Shot], curves: &Curves, out: &mut dyn Write) -> io::
     lines.try_for_each(|line| out.write_all(line.as_bytes()))
 }
 
-const PULSES: [(&str, PulseKind); 3] = [
-    ("incident", PulseKind::Incident),
-    ("wall", PulseKind::Wall),
-    ("reflected", PulseKind::Reflected),
-];
-
 fn shot_line(shot: Option<&Shot>, keep_dubious: bool) -> Line {
     let flight = shot.and_then(|shot| shot.flight.as_ref().ok());
     let picked = |kind| flight.and_then(|flight| flight.picks.pulse(kind));
@@ -82,18 +76,18 @@ fn shot_line(shot: Option<&Shot>, keep_dubious: bool) -> Line {
         let title = format!("{name}_over_incident");
         line.extend(estimate(&title, &format!("{title}_sigma"), ratio));
     }
-    let height = |(name, kind)| number(&format!("{name}_peak_v"), picked(kind).map(|p| p.height));
-    line.extend(PULSES.map(height));
+    let height = |kind| number(&format!("{kind}_peak_v"), picked(kind).map(|p| p.height));
+    line.extend(PulseKind::ALL.map(height));
     let force_n = |kind| flight.and_then(|flight| flight.picks.force_n(kind));
-    line.extend(PULSES.map(|(name, kind)| number(&format!("{name}_peak_n"), force_n(kind))));
-    let width = |(name, kind)| number(&format!("{name}_width_s"), picked(kind).map(|p| p.width_s));
-    line.extend(PULSES.map(width));
-    for (name, kind) in PULSES {
+    line.extend(PulseKind::ALL.map(|kind| number(&format!("{kind}_peak_n"), force_n(kind))));
+    let width = |kind| number(&format!("{kind}_width_s"), picked(kind).map(|p| p.width_s));
+    line.extend(PulseKind::ALL.map(width));
+    for kind in PulseKind::ALL {
         let pick = picked(kind);
-        line.push(number(&format!("{name}_time_s"), pick.map(|pick| pick.time_s)));
-        line.push(number(&format!("{name}_snr"), pick.map(|pick| pick.signal_to_noise)));
+        line.push(number(&format!("{kind}_time_s"), pick.map(|pick| pick.time_s)));
+        line.push(number(&format!("{kind}_snr"), pick.map(|pick| pick.signal_to_noise)));
         let squares = pick.and_then(|pick| pick.misfit).map(|misfit| misfit * misfit);
-        line.push(number(&format!("{name}_fit_chi2"), squares));
+        line.push(number(&format!("{kind}_fit_chi2"), squares));
     }
     let reasons = shot.map(|shot| shot.reasons(keep_dubious));
     line.push(words(
@@ -136,9 +130,9 @@ fn speed_line(case: Option<&str>, row: Option<&SpeedRow>, none: Option<&Unmeasur
     summarised("tof_reflected_s", row.and_then(|row| row.reflected_s));
     summarised("wall_over_incident", row.map(|row| row.wall_over_incident));
     summarised("reflected_over_incident", row.and_then(|row| row.reflected_over_incident));
-    for (at, (name, _)) in PULSES.into_iter().enumerate() {
-        let width = row.and_then(|row| row.widths_s[at]);
-        line.push(number(&format!("{name}_width_s"), width.map(|width| width.mean)));
+    for kind in PulseKind::ALL {
+        let width = row.and_then(|row| row.widths_s[kind as usize]);
+        line.push(number(&format!("{kind}_width_s"), width.map(|width| width.mean)));
     }
     let times = ["tof_incident", "tof_reflected"].into_iter().enumerate();
     for (at, time) in times.clone() {

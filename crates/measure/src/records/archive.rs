@@ -4,7 +4,7 @@ use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays::{Arrays, SampleTable};
 use crate::records::options::{ReadOptions, no_channel};
 use crate::records::read::Raw;
-use crate::records::stored::{MOST_SAMPLES, StoredChannel, StoredNumber, StoredTable};
+use crate::records::stored::{MOST_SAMPLES, StoredChannel, StoredNumber};
 use flate2::read::{DeflateDecoder, ZlibDecoder};
 use indexmap::IndexMap;
 use std::fs::File;
@@ -16,7 +16,7 @@ use std::rc::Rc;
 const MOST_TOGETHER: u64 = 1 << 28;
 
 /// Most bytes of a compressed array, which is inflated into a temporary file: 16 GiB.
-const MOST_INFLATED: u64 = 1 << 34;
+pub(super) const MOST_INFLATED: u64 = 1 << 34;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Packing {
@@ -46,14 +46,14 @@ impl Stretch {
         Self { start, size, ..self.clone() }
     }
 
-    /// The same, not compressed: what is goes into a temporary file once, for many arrays.
-    pub(super) fn inflated(&self, file: &Path) -> Result<Self> {
+    /// The same, not compressed: at most so many bytes of what is go into a temporary file.
+    pub(super) fn inflated(&self, file: &Path, most: u64) -> Result<Self> {
         if self.packing == Packing::Plain {
             return Ok(self.clone());
         }
         let copy = || {
             let mut copy = tempfile::tempfile()?;
-            let size = io::copy(&mut self.bytes(file)?.take(MOST_INFLATED), &mut copy)?;
+            let size = io::copy(&mut self.bytes(file)?.take(most), &mut copy)?;
             Ok(Self { inflated: Some(Rc::new(copy)), ..Self::new(0, size, Packing::Plain) })
         };
         copy().map_err(|cause| MeasureError::reading(file, cause))
@@ -145,22 +145,17 @@ impl StoredArray {
     fn numbers(&self, file: &Path) -> Result<(File, u64)> {
         let reading = |cause| MeasureError::reading(file, cause);
         let end = self.start.saturating_add(self.length);
-        if self.within.packing == Packing::Plain {
-            if end > self.within.size {
-                let detail = format!("{} of {end} bytes of an array", self.within.size);
-                return Err(MeasureError::truncated(file_name(file), detail));
-            }
-            let opened = self.within.open(file).map_err(reading)?;
-            return Ok((opened, self.within.start + self.start));
+        let is_plain = self.within.packing == Packing::Plain;
+        if is_plain && end > self.within.size {
+            let detail = format!("{} of {end} bytes of an array", self.within.size);
+            return Err(MeasureError::truncated(file_name(file), detail));
         }
-        if end > MOST_INFLATED {
+        if !is_plain && end > MOST_INFLATED {
             let detail = "a compressed array of more than 16 GiB; save it uncompressed";
             return Err(MeasureError::malformed(file, "an archive", detail));
         }
-        let bytes = self.within.bytes(file).map_err(reading)?;
-        let mut inflated = tempfile::tempfile().map_err(reading)?;
-        io::copy(&mut bytes.take(end), &mut inflated).map_err(reading)?;
-        Ok((inflated, self.start))
+        let plain = self.within.inflated(file, end)?;
+        Ok((plain.open(file).map_err(reading)?, plain.start + self.start))
     }
 
     /// All numbers of a small array, in the order in which they are stored.
@@ -200,38 +195,27 @@ impl StoredArray {
                 let detail = format!("{read} of {} bytes of numbers are there", self.length);
                 return Err(MeasureError::truncated(file_name(file), detail));
             }
-            let transposed = StoredTable {
-                file: file.to_owned(),
-                reader: Cursor::new(transposed(&bytes, wide, table.head.rows)),
-                channels: vec![StoredChannel::run(self.number, 0, frames, wide)],
-                row_bytes: (frames * wide) as u64,
-            };
-            return Ok(table.head.records(options.parts, transposed));
+            let transposed = Cursor::new(transposed(&bytes, wide, table.head.rows));
+            let channels = vec![StoredChannel::run(self.number, 0, frames, wide)];
+            let row_bytes = (frames * wide) as u64;
+            return Ok(table.head.stored(options.parts, transposed, channels, row_bytes));
         }
         let channel = |at: &usize| {
             let skipped = (*at as u64).saturating_mul(stride(table.axes.channels) as u64);
             let first = start.saturating_add(skipped);
             StoredChannel::run(self.number, first, frames, between)
         };
-        let stored = StoredTable {
-            file: file.to_owned(),
-            reader,
-            channels: table.chosen.iter().map(channel).collect(),
-            row_bytes: stride(table.axes.shots) as u64,
-        };
-        Ok(table.head.records(options.parts, stored))
+        let channels = table.chosen.iter().map(channel).collect();
+        Ok(table.head.stored(options.parts, reader, channels, stride(table.axes.shots) as u64))
     }
 
     fn strides(&self) -> Vec<usize> {
         let mut strides = vec![0; self.shape.len()];
         let mut stride = self.number.width();
-        let mut set = |axis: usize| {
+        for nth in 0..self.shape.len() {
+            let axis = if self.fortran { nth } else { self.shape.len() - 1 - nth };
             strides[axis] = stride;
             stride = stride.saturating_mul(self.shape[axis]);
-        };
-        match self.fortran {
-            true => (0..self.shape.len()).for_each(&mut set),
-            false => (0..self.shape.len()).rev().for_each(&mut set),
         }
         strides
     }

@@ -5,7 +5,7 @@ use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{
     MOST_CHANNELS, MOST_COLUMNS, Parts, ReadOptions, Rows, ambiguous, chosen, list, numbered,
 };
-use crate::records::read::Raw;
+use crate::records::read::{Raw, or_error};
 use crate::records::record::Record;
 use crate::records::stored::Head;
 use indexmap::IndexMap;
@@ -402,8 +402,7 @@ fn group_by_group(
     options: ReadOptions,
 ) -> Raw {
     let records = groups.into_iter().flat_map(move |group| {
-        let records = of_samples(&arrays, group, interval_s, &options).map(|opened| opened.0);
-        records.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
+        or_error(of_samples(&arrays, group, interval_s, &options).map(|opened| opened.0))
     });
     Box::new((1..).zip(records).map(|(number, record)| {
         let mut record = record?;

@@ -1,17 +1,15 @@
 //! HDF5: datasets of any program, and tables of results.
 
-mod names;
-
-use self::names::Names;
 use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays::{self, Arrays, Axes, INTERVALS, RATES, SampleTable};
 use crate::records::files::{exclusive, persist};
+use crate::records::mat::{DEEPEST, cell_name};
 use crate::records::options::ReadOptions;
 use crate::records::read::Raw;
 use crate::records::record::{Samples, converter_range_v};
 use crate::records::series;
-use crate::records::stored::{NumberKind, SampleSource, StoredNumber};
-use indexmap::IndexMap;
+use crate::records::stored::{NumberKind, StoredNumber};
+use indexmap::{IndexMap, IndexSet};
 use rust_hdf5::format::FormatContext;
 use rust_hdf5::format::messages::attribute::AttributeMessage;
 use rust_hdf5::{ByteOrder, DatatypeMessage, H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
@@ -224,16 +222,14 @@ impl Arrays for Datasets {
         let dataset = self.dataset(name)?;
         let shape = self.axes(dataset.shape());
         let part = Some(name.to_owned());
-        let table = SampleTable::new(&self.file, part, &shape, interval_s, options)?;
-        let slices = Slices {
-            file: self.file.clone(),
-            name: name.to_owned(),
-            dataset,
-            axes: table.axes,
-            chosen: table.chosen,
-            by_matlab: self.by_matlab,
-        };
-        Ok(table.head.records(options.parts, slices))
+        let SampleTable { axes, chosen, head } =
+            SampleTable::new(&self.file, part, &shape, interval_s, options)?;
+        let (file, name, of) = (self.file.clone(), name.to_owned(), (axes, self.by_matlab));
+        Ok(head.records(options.parts, move |row, from, count| {
+            let one = |channel: &usize| slice(&dataset, of, (row, *channel), (from, count));
+            let taken: Result<_, _> = chosen.iter().map(one).collect();
+            taken.map_err(|error| refused(&file, &name, &error))
+        }))
     }
 
     fn stated_s(&self) -> Option<f64> {
@@ -256,52 +252,134 @@ impl Arrays for Datasets {
     }
 }
 
-struct Slices {
-    file: PathBuf,
-    name: String,
-    dataset: H5Dataset,
-    axes: Axes,
-    chosen: Vec<usize>,
-    by_matlab: bool,
-}
-
-impl SampleSource for Slices {
-    fn samples(&mut self, row: usize, from: usize, count: usize) -> Result<Vec<Samples>> {
-        let one = |channel: &usize| self.channel(row, *channel, (from, count));
-        let taken: Result<_, Hdf5Error> = self.chosen.iter().map(one).collect();
-        taken.map_err(|error| refused(&self.file, &self.name, &error))
+/// Samples of a channel and a row from a sample on, and the range of whole numbers of 16 bits.
+fn slice(
+    dataset: &H5Dataset,
+    (axes, by_matlab): (Axes, bool),
+    (row, channel): (usize, usize),
+    (from, count): (usize, usize),
+) -> Result<Samples, Hdf5Error> {
+    let rank = dataset.shape().len();
+    let (mut starts, mut counts) = (vec![0; rank], vec![1; rank]);
+    let places =
+        [(axes.shots, row, 1), (axes.channels, channel, 1), (Some(axes.time), from, count)];
+    for (axis, start, count) in places {
+        if let Some(axis) = axis {
+            let axis = if by_matlab { rank - 1 - axis } else { axis };
+            (starts[axis], counts[axis]) = (start, count);
+        }
     }
+    Ok(match dataset.datatype()? {
+        DatatypeMessage::FixedPoint { size, signed, .. } => {
+            let whole = dataset.read_numeric_slice_as::<i64>(&starts, &counts)?;
+            let range_v = (size == 2 && signed).then(|| converter_range_v(1.0, 0.0));
+            (whole.into_iter().map(|number| number as f64).collect(), range_v)
+        }
+        _ => (dataset.read_numeric_slice_as::<f64>(&starts, &counts)?, None),
+    })
 }
 
-impl Slices {
-    fn channel(
-        &self,
-        row: usize,
-        channel: usize,
-        (from, count): (usize, usize),
-    ) -> Result<Samples, Hdf5Error> {
-        let rank = self.dataset.shape().len();
-        let (mut starts, mut counts) = (vec![0; rank], vec![1; rank]);
-        for (axis, start, count) in [
-            (self.axes.shots, row, 1),
-            (self.axes.channels, channel, 1),
-            (Some(self.axes.time), from, count),
-        ] {
-            if let Some(axis) = axis {
-                let axis = if self.by_matlab { rank - 1 - axis } else { axis };
-                (starts[axis], counts[axis]) = (start, count);
+const CLASS: &str = "MATLAB_class";
+/// Of an array without elements, whose dataset has its axes.
+const EMPTY: &str = "MATLAB_empty";
+const CELLS: &str = "cell";
+/// MATLAB's classes that are no numbers, and groups for its own use.
+const NO_NUMBERS: &[&str] = &["char", "struct", "logical", "function_handle"];
+const INTERNAL: &[&str] = &["#refs#", "#subsystem#"];
+
+/// Names of datasets as MATLAB has them, and where each is.
+struct Names<'a> {
+    open: &'a H5File,
+    datasets: IndexSet<String>,
+    found: IndexMap<String, String>,
+    /// Cells and groups that were looked into: references can form circles.
+    seen: IndexSet<String>,
+}
+
+impl<'a> Names<'a> {
+    /// Those of a file.
+    fn of(open: &'a H5File) -> Result<IndexMap<String, String>, Hdf5Error> {
+        let datasets: IndexSet<String> = open.dataset_names().into_iter().collect();
+        let mut names = Self { open, datasets, found: IndexMap::new(), seen: IndexSet::new() };
+        let mut own: Vec<String> = names.datasets.iter().cloned().collect();
+        own.retain(|path| !INTERNAL.iter().any(|group| relative(path).starts_with(group)));
+        own.into_iter().try_for_each(|path| names.add(path.clone(), &path, 0))?;
+        Ok(names.found)
+    }
+
+    /// Adds the numbers of an object: a dataset's own, those of its cells, or of a group's fields.
+    fn add(&mut self, name: String, path: &str, depth: usize) -> Result<(), Hdf5Error> {
+        if !self.datasets.contains(path) {
+            return self.add_fields(&name, path, depth);
+        }
+        let Ok(dataset) = self.open.dataset(path) else {
+            // What it is said to be is found out where it is read.
+            self.found.insert(name, path.to_owned());
+            return Ok(());
+        };
+        let class = dataset.attr(CLASS).and_then(|class| class.read_string()).unwrap_or_default();
+        match dataset.datatype() {
+            Ok(DatatypeMessage::FixedPoint { .. } | DatatypeMessage::FloatingPoint { .. })
+                if !NO_NUMBERS.contains(&&*class) && dataset.attr(EMPTY).is_err() =>
+            {
+                self.found.insert(name, path.to_owned());
+            }
+            Ok(kind @ DatatypeMessage::Reference { .. }) if kind == own_reference() => {
+                return self.add_cells((&name, path), &dataset, class == CELLS, depth);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Adds what the elements of a dataset refer to: cells, or one field of several structs.
+    fn add_cells(
+        &mut self,
+        (name, path): (&str, &str),
+        of: &H5Dataset,
+        are_cells: bool,
+        depth: usize,
+    ) -> Result<(), Hdf5Error> {
+        if !self.is_new(path, depth) {
+            return Ok(());
+        }
+        let mut shape = of.shape();
+        shape.reverse();
+        for (at, cell) in of.read_references()?.iter().enumerate() {
+            let own = match name.rsplit_once('/') {
+                Some((group, field)) if !are_cells => format!("{group}({})/{field}", at + 1),
+                _ => cell_name(name, &shape, at),
+            };
+            if let Some(path) = cell.path() {
+                self.add(own, relative(path), depth + 1)?;
             }
         }
-        let (dataset, starts, counts) = (&self.dataset, &*starts, &*counts);
-        Ok(match dataset.datatype()? {
-            DatatypeMessage::FixedPoint { size, signed, .. } => {
-                let whole = dataset.read_numeric_slice_as::<i64>(starts, counts)?;
-                let range_v = (size == 2 && signed).then(|| converter_range_v(1.0, 0.0));
-                (whole.into_iter().map(|number| number as f64).collect(), range_v)
-            }
-            _ => (dataset.read_numeric_slice_as::<f64>(starts, counts)?, None),
+        Ok(())
+    }
+
+    fn is_new(&mut self, path: &str, depth: usize) -> bool {
+        depth <= DEEPEST && self.seen.insert(path.to_owned())
+    }
+
+    fn add_fields(&mut self, name: &str, group: &str, depth: usize) -> Result<(), Hdf5Error> {
+        if !self.is_new(group, depth) {
+            return Ok(());
+        }
+        let within = |path: &String| Some(path.strip_prefix(group)?.strip_prefix('/')?.to_owned());
+        let fields: Vec<String> = self.datasets.iter().filter_map(within).collect();
+        fields.into_iter().try_for_each(|field| {
+            self.add(format!("{name}/{field}"), &format!("{group}/{field}"), depth + 1)
         })
     }
+}
+
+/// References within one file, as MATLAB writes them; others may name another file.
+fn own_reference() -> DatatypeMessage {
+    DatatypeMessage::object_reference(&FormatContext::default_v3())
+}
+
+fn relative(path: &str) -> &str {
+    path.trim_start_matches('/')
 }
 
 /// Columns of numbers with a text about them, as a file: for results that many processes write

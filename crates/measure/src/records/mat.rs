@@ -1,7 +1,7 @@
 //! MATLAB's files of the versions 4 and 5: headers here, numbers raw. Version 7.3 is HDF5.
 
 use crate::error::{MeasureError, Result, file_name};
-use crate::records::archive::{Archive, Packing, StoredArray, Stretch};
+use crate::records::archive::{Archive, MOST_INFLATED, Packing, StoredArray, Stretch};
 use crate::records::arrays;
 use crate::records::options::ReadOptions;
 use crate::records::read::Raw;
@@ -149,7 +149,7 @@ impl Matrices<'_> {
         (count, name): (usize, &dyn Fn(usize) -> String),
         depth: usize,
     ) -> Result<()> {
-        let within = within.inflated(self.file)?;
+        let within = within.inflated(self.file, MOST_INFLATED)?;
         for number in 0..count {
             if at >= end || self.arrays.len() >= MOST_ARRAYS {
                 break;

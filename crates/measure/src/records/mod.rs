@@ -37,4 +37,3 @@ pub use self::{
     hdf5::ColumnFile,
     series::{SeriesChannels, SeriesInfo, SeriesWriter, ShotRow, truth, untriggered, verify},
 };
-pub(crate) use record::extremes;

@@ -5,9 +5,10 @@ use crate::error::{MeasureError, Result, file_name};
 #[cfg(feature = "hdf5")]
 use crate::records::hdf5::open as open_hdf5;
 use crate::records::options::{Parts, ReadOptions};
-use crate::records::record::{Channel, Record, SEPARATE, extremes};
+use crate::records::record::{Channel, Record, SEPARATE};
 use crate::records::stored::from_sample;
 use crate::records::{mat, numpy, tdms, text, wav};
+use crate::signal::extremes;
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
@@ -112,8 +113,12 @@ pub struct Records {
 /// A file that cannot be read at all gives one error and nothing else.
 pub fn read(file: &Path, options: &ReadOptions) -> Records {
     let opened = format_of(file).and_then(|open| open(file, options));
-    let records = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
-    Records::new(file, records, options)
+    Records::new(file, or_error(opened), options)
+}
+
+/// Records that were opened, or the error alone.
+pub(crate) fn or_error(opened: Result<Raw>) -> Raw {
+    opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))))
 }
 
 impl Iterator for Records {
@@ -228,7 +233,8 @@ fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>> {
         );
         return Err(MeasureError::Samples(source.to_owned(), detail));
     }
-    let ends = extremes(volts.iter().copied().filter(|volt| volt.is_finite()));
+    let finite: Vec<f64> = volts.iter().copied().filter(|volt| volt.is_finite()).collect();
+    let ends = extremes(&finite);
     let bad: Vec<usize> = bad().collect();
     let runs = bad.chunk_by(|one, next| one + 1 == *next);
     let gaps: Vec<Range<usize>> = runs.map(|run| run[0]..run[0] + run.len()).collect();

@@ -1,6 +1,6 @@
 //! One shot as a rig recorded it.
 
-use crate::signal::Bandwidth;
+use crate::signal::{Bandwidth, extremes};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -132,15 +132,8 @@ pub(crate) const SEPARATE: &[&str] = &["sensor", "wall"];
 
 pub(crate) type Samples = (Vec<f64>, Option<(f64, f64)>);
 
-/// Lowest and highest number; +∞ and −∞ of none.
-pub(crate) fn extremes(volts: impl IntoIterator<Item = f64>) -> (f64, f64) {
-    let none = (f64::INFINITY, f64::NEG_INFINITY);
-    let volts = volts.into_iter();
-    volts.fold(none, |(low, high), volt| (low.min(volt), high.max(volt)))
-}
-
 /// Range of a 16-bit converter, V = count · `volts_per_count` + `offset_v`.
 pub(crate) fn converter_range_v(volts_per_count: f64, offset_v: f64) -> (f64, f64) {
     let ends = [i16::MIN, i16::MAX];
-    extremes(ends.map(|count| f64::from(count) * volts_per_count + offset_v))
+    extremes(&ends.map(|count| f64::from(count) * volts_per_count + offset_v))
 }

@@ -239,34 +239,6 @@ fn append(
     }
 }
 
-pub(crate) trait SampleSource {
-    /// `count` samples of every channel from sample `from` of a row on.
-    fn samples(&mut self, row: usize, from: usize, count: usize) -> Result<Vec<Samples>>;
-}
-
-pub(crate) struct StoredTable<R> {
-    pub file: PathBuf,
-    pub reader: R,
-    pub channels: Vec<StoredChannel>,
-    /// Bytes from a row, or shot, to the next.
-    pub row_bytes: u64,
-}
-
-impl<R: Read + Seek> SampleSource for StoredTable<R> {
-    fn samples(&mut self, row: usize, from: usize, count: usize) -> Result<Vec<Samples>> {
-        let shift = self.row_bytes.saturating_mul(row as u64);
-        let channels = self.channels.iter();
-        let read = channels.map(|one| {
-            let volts = one.read(&mut self.reader, shift, from..from + count)?;
-            let is_counts = one.number.kind == NumberKind::I16 && one.scales.is_empty();
-            let range = || converter_range_v(one.number.scale, one.number.offset);
-            Ok((volts, is_counts.then(range)))
-        });
-        let read: io::Result<_> = read.collect();
-        read.map_err(|cause| MeasureError::reading(&self.file, cause))
-    }
-}
-
 /// What the records of a table of shots share.
 #[derive(Clone, Debug)]
 pub(crate) struct Head {
@@ -282,9 +254,36 @@ pub(crate) struct Head {
 }
 
 impl Head {
-    /// The records: rows, or parts of them. Several rows are not divided into shots here, which are
+    /// The records of channels in a file, whose rows, or shots, are so many bytes apart.
+    pub(super) fn stored(
+        self,
+        parts: Parts,
+        mut reader: impl Read + Seek + 'static,
+        channels: Vec<StoredChannel>,
+        row_bytes: u64,
+    ) -> Raw {
+        let file = self.file.clone();
+        self.records(parts, move |row, from, count| {
+            let shift = row_bytes.saturating_mul(row as u64);
+            let read = channels.iter().map(|one| {
+                let volts = one.read(&mut reader, shift, from..from + count)?;
+                let is_counts = one.number.kind == NumberKind::I16 && one.scales.is_empty();
+                let range = || converter_range_v(one.number.scale, one.number.offset);
+                Ok((volts, is_counts.then(range)))
+            });
+            let read: io::Result<_> = read.collect();
+            read.map_err(|cause| MeasureError::reading(&file, cause))
+        })
+    }
+
+    /// The records: rows, or parts of them, of which `samples` returns a count of every channel's
+    /// samples from a row's sample on. Several rows are not divided into shots here, which are
     /// counted by row first.
-    pub(super) fn records(self, parts: Parts, mut source: impl SampleSource + 'static) -> Raw {
+    pub(super) fn records(
+        self,
+        parts: Parts,
+        mut samples: impl FnMut(usize, usize, usize) -> Result<Vec<Samples>> + 'static,
+    ) -> Raw {
         let pieces = matches!(parts, Parts::Pieces(_));
         let each = match parts {
             Parts::Pieces(most) => most.clamp(1, self.frames),
@@ -308,7 +307,7 @@ impl Head {
             let name = self.source(shot, first);
             let taken = match count > MOST_SAMPLES {
                 true => Err(MeasureError::too_long(name.clone(), MOST_SAMPLES)),
-                false => source.samples(row, from, count),
+                false => samples(row, from, count),
             };
             start = if taken.is_ok() { start + count } else { total };
             Some(taken.map(|samples| self.record(name, shot, first, samples)))

@@ -5,9 +5,9 @@ use crate::error::{MeasureError, Result, file_name};
 use crate::records::arrays;
 use crate::records::interval::{interval_s, seconds_assumed};
 use crate::records::options::{ReadOptions, chosen};
-use crate::records::read::Raw;
+use crate::records::read::{Raw, or_error};
 use crate::records::stored::{
-    Head, HeaderBytes, NumberKind, SampleRuns, StoredChannel, StoredNumber, StoredTable,
+    Head, HeaderBytes, NumberKind, SampleRuns, StoredChannel, StoredNumber,
 };
 use indexmap::IndexMap;
 use std::collections::HashMap;
@@ -17,15 +17,14 @@ use std::path::Path;
 
 /// Opens a TDMS file: every group with samples is a record, or several if it is to be cut.
 pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
-    let Index { groups, cut_short } = Index::read(file)?;
+    let (groups, cut_short) = index(file)?;
     if groups.is_empty() && cut_short.is_none() {
         return Err(MeasureError::empty(file_name(file)));
     }
     let several = groups.len() > 1;
     let mut records: Vec<Raw> = Vec::new();
     for (number, (group, channels)) in (1..).zip(groups) {
-        let opened = open_group(file, group, channels, options);
-        let opened = opened.unwrap_or_else(|error| Box::new(std::iter::once(Err(error))));
+        let opened = or_error(open_group(file, group, channels, options));
         records.push(Box::new(opened.map(move |record| {
             let mut record = record?;
             record.shot = record.shot.or(several.then_some(number));
@@ -81,9 +80,7 @@ fn open_group(
         frames,
         note,
     };
-    let table =
-        StoredTable { file: file.to_owned(), reader: opened, channels: stored, row_bytes: 0 };
-    Ok(head.records(options.parts, table))
+    Ok(head.stored(options.parts, opened, stored, 0))
 }
 
 /// Name and step of a channel that rises evenly, as times do and no signal, of several. One that
@@ -101,6 +98,7 @@ fn times(opened: &mut File, channels: &Channels, options: &ReadOptions) -> Optio
 }
 
 type Channels = IndexMap<String, TdmsChannel>;
+type Groups = IndexMap<String, Channels>;
 
 struct TdmsChannel {
     stored: StoredChannel,
@@ -314,19 +312,12 @@ impl Card {
     }
 }
 
-/// Where each channel's samples are, by group: all segments' metadata, no samples.
-struct Index {
-    groups: IndexMap<String, Channels>,
-    /// Why the file ends before its end.
-    cut_short: Option<String>,
-}
-
 #[derive(Default)]
 struct TdmsWalk {
     objects: IndexMap<String, Option<Values>>,
     /// The last layout of each object so far.
     known: HashMap<String, Option<Values>>,
-    groups: IndexMap<String, Channels>,
+    groups: Groups,
 }
 
 struct Lead {
@@ -351,55 +342,55 @@ impl Lead {
     }
 }
 
-impl Index {
-    fn read(file: &Path) -> Result<Self> {
-        let reading = |cause| MeasureError::reading(file, cause);
-        let malformed = |detail: String| MeasureError::malformed(file, "TDMS", detail);
-        let mut opened = File::open(file).map_err(reading)?;
-        let length = opened.metadata().map_err(reading)?.len();
-        let (mut walk, mut at, mut seen) = (TdmsWalk::default(), 0, 0_usize);
-        let mut cut_short = None;
-        while at < length && cut_short.is_none() {
-            let lead = read_at(&mut opened, at, LEAD).map_err(reading)?;
-            let Some(lead) = Lead::parse(&lead) else {
-                cut_short = Some(format!("no segment begins at byte {at}"));
-                break;
-            };
-            let begin = at + LEAD;
-            let end = begin.checked_add(lead.next).filter(|end| *end <= length);
-            if end.is_none() {
-                cut_short = Some(format!("the segment at byte {at} was never completed"));
-            }
-            let end = end.unwrap_or(length);
-            let raw = begin.saturating_add(lead.metadata).min(end);
-            if lead.has(METADATA) {
-                let size = (raw - begin).min(MOST_METADATA);
-                let metadata = read_at(&mut opened, begin, size).map_err(reading)?;
-                walk.metadata(&lead, &metadata).ok_or_else(|| {
-                    malformed(format!("the segment at byte {at} has metadata it cannot have"))
-                })?;
-            }
-            if lead.has(SAMPLES) && end > raw {
-                walk.samples(&lead, raw, end);
-            }
-            seen = seen.saturating_add(walk.objects.len());
-            if seen > MOST_OBJECTS {
-                return Err(malformed(format!(
-                    "its segments list more than {MOST_OBJECTS} channels in all; defragment it, or \
-                     export parts of it"
-                )));
-            }
-            at = end;
+/// Where each channel's samples are, by group, from all segments' metadata; and why the file ends
+/// before its end, if it does.
+fn index(file: &Path) -> Result<(Groups, Option<String>)> {
+    let reading = |cause| MeasureError::reading(file, cause);
+    let malformed = |detail: String| MeasureError::malformed(file, "TDMS", detail);
+    let mut opened = File::open(file).map_err(reading)?;
+    let length = opened.metadata().map_err(reading)?.len();
+    let (mut walk, mut at, mut seen) = (TdmsWalk::default(), 0, 0_usize);
+    let mut cut_short = None;
+    while at < length && cut_short.is_none() {
+        let lead = read_at(&mut opened, at, LEAD).map_err(reading)?;
+        let Some(lead) = Lead::parse(&lead) else {
+            cut_short = Some(format!("no segment begins at byte {at}"));
+            break;
+        };
+        let begin = at + LEAD;
+        let end = begin.checked_add(lead.next).filter(|end| *end <= length);
+        if end.is_none() {
+            cut_short = Some(format!("the segment at byte {at} was never completed"));
         }
-        let mut groups = walk.groups;
-        if let (true, Some(detail)) = (groups.is_empty(), &cut_short) {
-            return Err(MeasureError::truncated(file_name(file), detail));
+        let end = end.unwrap_or(length);
+        let raw = begin.saturating_add(lead.metadata).min(end);
+        if lead.has(METADATA) {
+            let size = (raw - begin).min(MOST_METADATA);
+            let metadata = read_at(&mut opened, begin, size).map_err(reading)?;
+            walk.metadata(&lead, &metadata).ok_or_else(|| {
+                malformed(format!("the segment at byte {at} has metadata it cannot have"))
+            })?;
         }
-        let channels = groups.values_mut();
-        channels.for_each(|channels| channels.retain(|_, channel| channel.stored.len() > 0));
-        groups.retain(|_, channels| !channels.is_empty());
-        Ok(Self { groups, cut_short })
+        if lead.has(SAMPLES) && end > raw {
+            walk.samples(&lead, raw, end);
+        }
+        seen = seen.saturating_add(walk.objects.len());
+        if seen > MOST_OBJECTS {
+            return Err(malformed(format!(
+                "its segments list more than {MOST_OBJECTS} channels in all; defragment it, or \
+                 export parts of it"
+            )));
+        }
+        at = end;
     }
+    let mut groups = walk.groups;
+    if let (true, Some(detail)) = (groups.is_empty(), &cut_short) {
+        return Err(MeasureError::truncated(file_name(file), detail));
+    }
+    let channels = groups.values_mut();
+    channels.for_each(|channels| channels.retain(|_, channel| channel.stored.len() > 0));
+    groups.retain(|_, channels| !channels.is_empty());
+    Ok((groups, cut_short))
 }
 
 fn read_at(opened: &mut File, at: u64, count: u64) -> io::Result<Vec<u8>> {
@@ -423,8 +414,9 @@ impl TdmsWalk {
             for _ in 0..bytes.u32()? {
                 properties.push(bytes.property()?);
             }
-            let code = values.as_ref().map(Values::code);
-            if let Some(channel) = self.channel(&path, code, lead.has(BIG_ENDIAN)) {
+            let kind = values.as_ref().and_then(|values| kind(values.code()));
+            let number = kind.map(|kind| StoredNumber::plain(kind, bytes.big_endian));
+            if let Some(channel) = channel(&mut self.groups, &path, number) {
                 channel.properties.extend(properties);
             }
             self.objects.insert(path.clone(), values.clone());
@@ -451,64 +443,61 @@ impl TdmsWalk {
         })
     }
 
-    /// The channel of a path like `/'group'/'channel'`, if it has numbers. Quotes inside a name are
-    /// doubled.
-    fn channel(&mut self, path: &str, code: Option<u32>, big: bool) -> Option<&mut TdmsChannel> {
-        let inner = path.strip_prefix("/'")?.strip_suffix('\'')?;
-        let (group, name) = inner.split_once("'/'")?;
-        let group = self.groups.entry(group.replace("''", "'")).or_default();
-        let name = name.replace("''", "'");
-        if !group.contains_key(&name) {
-            let number = StoredNumber::plain(kind(code?)?, big);
-            let stored = StoredChannel { number, scales: Vec::new(), runs: Vec::new() };
-            let properties = HashMap::new();
-            group.insert(name.clone(), TdmsChannel { stored, properties });
-        }
-        group.get_mut(&name)
-    }
-
     fn samples(&mut self, lead: &Lead, raw: u64, end: u64) {
         let with = self.objects.iter();
-        let with = with.filter_map(|(path, values)| Some((path.clone(), values.clone()?)));
-        let with: Vec<(String, Values)> = with.collect();
+        let with = with.filter_map(|(path, values)| Some((path.as_str(), values.as_ref()?)));
+        let with: Vec<(&str, &Values)> = with.collect();
         let (places, chunk_bytes) = match lead.has(CARDS) {
             true => of_cards(&with),
             false => of_objects(&with, lead.has(INTERLEAVED)),
         };
         let room = usize::try_from(end - raw).unwrap_or(usize::MAX);
-        for (path, place) in places {
-            let channel = self.channel(path, Some(place.code), lead.has(BIG_ENDIAN));
-            if let (Some(channel), true) = (channel, place.count > 0 && chunk_bytes > 0) {
-                channel.stored.runs.push(SampleRuns {
-                    offset: raw.saturating_add(place.begin as u64),
-                    count: place.count,
-                    stride: place.stride,
-                    chunks: room / chunk_bytes,
-                    chunk_bytes,
-                });
+        for (path, ChunkPlace { begin, count, stride }) in places {
+            let channel = channel(&mut self.groups, path, None);
+            if let (Some(channel), true) = (channel, count > 0 && chunk_bytes > 0) {
+                let offset = raw.saturating_add(begin as u64);
+                let chunks = room / chunk_bytes;
+                channel.stored.runs.push(SampleRuns { offset, count, stride, chunks, chunk_bytes });
             }
         }
     }
 }
 
+/// The channel of a path like `/'group'/'channel'`, if it has numbers; a new one of numbers of this
+/// kind. Quotes inside a name are doubled.
+fn channel<'a>(
+    groups: &'a mut Groups,
+    path: &str,
+    number: Option<StoredNumber>,
+) -> Option<&'a mut TdmsChannel> {
+    let inner = path.strip_prefix("/'")?.strip_suffix('\'')?;
+    let (group, name) = inner.split_once("'/'")?;
+    let group = groups.entry(group.replace("''", "'")).or_default();
+    let name = name.replace("''", "'");
+    if !group.contains_key(&name) {
+        let stored = StoredChannel { number: number?, scales: Vec::new(), runs: Vec::new() };
+        group.insert(name.clone(), TdmsChannel { stored, properties: HashMap::new() });
+    }
+    group.get_mut(&name)
+}
+
 struct ChunkPlace {
-    code: u32,
     begin: usize,
     count: usize,
     stride: usize,
 }
 
 /// Places of objects one after the other, or row by row, and the bytes of a chunk.
-fn of_objects(with: &[(String, Values)], rows: bool) -> (Vec<(&str, ChunkPlace)>, usize) {
+fn of_objects<'a>(with: &[(&'a str, &Values)], rows: bool) -> (Vec<(&'a str, ChunkPlace)>, usize) {
     let own = with.iter().filter_map(|(path, values)| match values {
-        Values::Own(code, count, size) => Some((path.as_str(), *code, *count, *size)),
+        Values::Own(code, count, size) => Some((*path, *code, *count, *size)),
         Values::Card(_) => None,
     });
     let row: usize = own.clone().filter_map(|own| width(own.1)).sum();
     let (mut places, mut begin, mut chunk_bytes) = (Vec::new(), 0_usize, 0_usize);
     for (path, code, count, size) in own {
         let wide = width(code).unwrap_or(0);
-        let place = ChunkPlace { code, begin, count, stride: if rows { row } else { wide } };
+        let place = ChunkPlace { begin, count, stride: if rows { row } else { wide } };
         places.push((path, place));
         begin = begin.saturating_add(if rows { wide } else { size });
         chunk_bytes = chunk_bytes.saturating_add(size);
@@ -518,9 +507,9 @@ fn of_objects(with: &[(String, Values)], rows: bool) -> (Vec<(&str, ChunkPlace)>
 
 /// Places of channels in the rows of DAQ cards, which come one after the other, and the bytes of a
 /// chunk.
-fn of_cards(with: &[(String, Values)]) -> (Vec<(&str, ChunkPlace)>, usize) {
+fn of_cards<'a>(with: &[(&'a str, &Values)]) -> (Vec<(&'a str, ChunkPlace)>, usize) {
     let own = with.iter().filter_map(|(path, values)| match values {
-        Values::Card(layout) => Some((path.as_str(), layout)),
+        Values::Card(layout) => Some((*path, layout)),
         Values::Own(..) => None,
     });
     let rows = own.clone().next().map_or(&[][..], |(_, layout)| &layout.rows);
@@ -540,7 +529,6 @@ fn in_row(layout: &Card, begins: &[usize]) -> Option<ChunkPlace> {
     let stride = *layout.rows.get(layout.card)?;
     let end = layout.within.checked_add(width(layout.code)?)?;
     (end <= stride).then_some(ChunkPlace {
-        code: layout.code,
         begin: begins.get(layout.card)?.saturating_add(layout.within),
         count: layout.count,
         stride,

@@ -4,7 +4,7 @@ use crate::error::{MeasureError, Result, file_name};
 use crate::records::interval::interval_s;
 use crate::records::options::{ReadOptions, chosen, numbered};
 use crate::records::read::Raw;
-use crate::records::stored::{Head, NumberKind, StoredChannel, StoredNumber, StoredTable};
+use crate::records::stored::{Head, NumberKind, StoredChannel, StoredNumber};
 use hound::{SampleFormat, WavReader, WavSpec};
 use std::fs::File;
 use std::io::{BufReader, Seek};
@@ -38,13 +38,8 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
         let first = start + (at * wide) as u64;
         StoredChannel::run(number, first, frames, names.len() * wide)
     };
-    let table = StoredTable {
-        file: file.to_owned(),
-        channels: chosen.iter().map(channel).collect(),
-        reader,
-        row_bytes: 0,
-    };
-    Ok(head.records(options.parts, table))
+    let channels = chosen.iter().map(channel).collect();
+    Ok(head.stored(options.parts, reader, channels, 0))
 }
 
 fn number(file: &Path, spec: WavSpec) -> Result<StoredNumber> {

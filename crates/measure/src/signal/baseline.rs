@@ -1,7 +1,7 @@
 //! Baseline and noise of a quiet stretch.
 
 use crate::error::{MeasureError, Result, all_finite};
-use crate::signal::statistics::median_and_spread;
+use crate::signal::statistics::{mean, median_and_spread, squares_about_mean};
 
 /// Offset and noise of a channel at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,9 +44,8 @@ pub fn baseline(quiet: &[f64]) -> Result<Baseline> {
     let reach = (5.0 * spread).max(3.0 * step);
     // Differences from the median keep the digits of a small noise on a large offset.
     let inner: Vec<f64> = differences().filter(|d| d.abs() <= reach).collect();
-    let mean = inner.iter().sum::<f64>() / inner.len() as f64;
-    let squares: f64 = inner.iter().map(|d| (d - mean).powi(2)).sum();
-    let noise = (squares / (inner.len() as f64 - 1.0).max(1.0)).sqrt();
+    let mean = mean(&inner);
+    let noise = (squares_about_mean(&inner) / (inner.len() as f64 - 1.0).max(1.0)).sqrt();
     let clipped = differences().map(|d| (d - mean).clamp(-reach, reach));
     Ok(Baseline {
         offset: centre + mean,
@@ -65,8 +64,7 @@ const MORE: f64 = 4.0;
 fn calm(quiet: &[f64]) -> Vec<f64> {
     let length = (quiet.len() / PARTS).max(8);
     let parts: Vec<&[f64]> = quiet.chunks(length).collect();
-    let mean = |part: &&[f64]| part.iter().sum::<f64>() / part.len() as f64;
-    let means: Vec<f64> = parts.iter().map(mean).collect();
+    let means: Vec<f64> = parts.iter().map(|part| mean(part)).collect();
     let (centre, spread) = median_and_spread(&means).unwrap_or_default();
     let is_off = |at: usize| {
         let mean = means.get(at);

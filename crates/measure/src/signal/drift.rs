@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use crate::signal::Pulse;
-use crate::signal::linear::{
-    LinearSolution, LocalPolynomial, NormalEquations, Row, differentiated, powers,
-};
+use crate::signal::linear::{LinearSolution, LocalPolynomial, Row, differentiated, powers};
+use crate::signal::statistics::{mean, median, median_and_spread, squares_about_mean};
+use crate::signal::{Found, Pulse};
 
 /// Highest degree of the baseline: over a shot of 3 ms mains hum of 20 % is a cubic to 0.1 %.
 const HIGHEST: usize = 3;
@@ -14,8 +13,8 @@ pub(super) const MARGIN: f64 = 2.0;
 /// Times of flight before the first pulse over which the baseline is fitted.
 const BEFORE: f64 = 1.5;
 const FEWEST: usize = 64;
-/// Parts of the quiet stretch whose means show a drift, and the ratio of variances from which on it
-/// is one: by chance in 1 of 5,000 records.
+/// Parts of what is before the first pulse whose means show a drift, or hum, and the ratio of variances
+/// from which on it is one: by chance in 1 of 5,000 records.
 const PARTS: usize = 16;
 const SIGNIFICANT: f64 = 15.0;
 /// Share of the first pulse's height below which a drift moves no maximum.
@@ -70,7 +69,7 @@ impl Detrended {
         let level = best.solution.values[0];
         let own = |at: usize| samples[at] - (background.value(&best, at.min(end)) - level);
         if let Some(calm) = without_hum {
-            let shift = level - calm[first..quiet_end].iter().sum::<f64>() / quiet.len() as f64;
+            let shift = level - mean(&calm[first..quiet_end]);
             let mut without: Vec<f64> = calm.iter().map(|sample| sample + shift).collect();
             (first..=end).for_each(|at| without[at] = own(at));
             return Some(Self { samples: without, first, half, fit: best });
@@ -141,9 +140,7 @@ impl Background<'_> {
     }
 
     fn value(&self, fit: &BackgroundFit, at: usize) -> f64 {
-        let terms = fit.degree + 1 + usize::from(fit.step.is_some());
-        let row = self.row(at, fit.degree, fit.step);
-        row.iter().zip(fit.solution.values).take(terms).map(|(term, c)| term * c).sum()
+        fit.solution.value(&self.row(at, fit.degree, fit.step))
     }
 
     fn smooth(&self) -> Option<BackgroundFit> {
@@ -174,10 +171,9 @@ impl Background<'_> {
 
     fn fit(&self, degree: usize, step: Option<usize>) -> Option<BackgroundFit> {
         let terms = degree + 1 + usize::from(step.is_some());
-        let mut normal = NormalEquations::new(terms);
         let members = self.members();
-        members.clone().for_each(|at| normal.add(&self.row(at, degree, step), self.samples[at]));
-        let solution = normal.solve()?;
+        let equation = |at: usize| (self.row(at, degree, step), self.samples[at]);
+        let solution = LinearSolution::of(terms, members.clone().map(equation))?;
         let mut found = BackgroundFit { solution, degree, step, noise: 0.0, criterion: 0.0 };
         let squares = members.clone().map(|at| (self.samples[at] - self.value(&found, at)).powi(2));
         let (squares, count) = (squares.sum::<f64>(), members.count() as f64);
@@ -208,10 +204,106 @@ fn drifts(quiet: &[f64], least: f64) -> bool {
     let Some(cubic) = LocalPolynomial::through(&means, 0.0, middle, middle, HIGHEST) else {
         return false;
     };
-    let level = means.iter().sum::<f64>() / PARTS as f64;
-    let all: f64 = means.iter().map(|mean| (mean - level).powi(2)).sum();
+    let all = squares_about_mean(&means);
     let left = cubic.residual.powi(2) * cubic.freedom;
     let explained = all - left;
     explained > PARTS as f64 * least * least
         && explained / HIGHEST as f64 > SIGNIFICANT * left / cubic.freedom
+}
+
+// Hum in records much longer than a shot, where it is as high as pulses and wider.
+
+/// Half the stretch in s that one cubic follows: a quarter of a period of 250 Hz, many pulses wide.
+const HALF_S: f64 = 1e-3;
+/// Means of samples in half a stretch, and cubics in it.
+const MEANS: usize = 96;
+const CUBICS: usize = 3;
+/// Shorter records, in halves of a stretch, have hum that is one cubic under a shot.
+const SHORTEST: usize = 4;
+/// Standard errors by which medians of stretches spread where there is hum.
+const SPREADS: f64 = 3.0;
+/// Pulses have at most this share of half a stretch as their width, else cubics follow them.
+const WIDEST: f64 = 0.1;
+/// Rounds of least squares of distances, then of squares without what is far off.
+const ROUNDS: [usize; 2] = [8, 4];
+/// Robust deviations from which on a mean is no hum but a pulse.
+const FAR: f64 = 4.7;
+
+/// A record less its hum, which keeps the level it began with; `None` where it is too short or has none.
+pub(super) fn without_hum(samples: &[f64], interval_s: f64) -> Option<Vec<f64>> {
+    let length = ((HALF_S / interval_s) as usize / MEANS).max(1);
+    let means: Vec<f64> = samples.chunks_exact(length).map(mean).collect();
+    if means.len() < SHORTEST * MEANS || !wanders(&means) {
+        return None;
+    }
+    let spacing = MEANS / CUBICS;
+    let knots: Vec<[f64; 2]> =
+        (0..=means.len() / spacing).map(|k| hum_at(&means, k * spacing)).collect::<Option<_>>()?;
+    let apart = (spacing * length) as f64;
+    let level = knots[0][0];
+    let hum = |at: usize| {
+        let place = (at as f64 - 0.5 * (length as f64 - 1.0)) / apart;
+        let first = (place.max(0.0) as usize).min(knots.len() - 2);
+        between([knots[first], knots[first + 1]], place - first as f64)
+    };
+    Some(samples.iter().enumerate().map(|(at, sample)| sample - (hum(at) - level)).collect())
+}
+
+/// Whether stretches lie at other levels than noise alone would leave them.
+fn wanders(means: &[f64]) -> bool {
+    let levels = means.chunks_exact(MEANS).filter_map(median_and_spread);
+    let (levels, noises): (Vec<f64>, Vec<f64>) = levels.unzip();
+    let noise = median(&noises).unwrap_or_default() / (MEANS as f64).sqrt();
+    median_and_spread(&levels).is_some_and(|(_, spread)| spread > SPREADS * noise)
+}
+
+/// Value of the hum at a mean, and its slope over the distance of two knots: of a cubic about it from
+/// which pulses stand out.
+fn hum_at(means: &[f64], centre: usize) -> Option<[f64; 2]> {
+    let first = centre.saturating_sub(MEANS);
+    let near = means.get(first..means.len().min(centre + MEANS + 1))?;
+    let row = |i: usize| powers(((first + i) as f64 - centre as f64) / MEANS as f64);
+    let mut weights = vec![1.0; near.len()];
+    let mut found = [0.0; 2];
+    for round in 0..ROUNDS[0] + ROUNDS[1] {
+        let weighted = near.iter().enumerate().zip(&weights);
+        let equations =
+            weighted.map(|((i, mean), weight)| (row(i).map(|x| x * weight), mean * weight));
+        let cubic = LinearSolution::of(HIGHEST + 1, equations)?;
+        let value = |row: &Row| cubic.value(row);
+        let off: Vec<f64> = near.iter().enumerate().map(|(i, y)| y - value(&row(i))).collect();
+        found = [value(&powers(0.0)), value(&differentiated(&powers(0.0))) / CUBICS as f64];
+        let (_, spread) = median_and_spread(&off)?;
+        if spread <= 0.0 {
+            break;
+        }
+        let weight = |off: &f64| match round < ROUNDS[0] {
+            true => (off.abs() / spread).max(0.1).sqrt().recip(),
+            false => (1.0 - (off / (FAR * spread)).powi(2)).max(0.0),
+        };
+        weights = off.iter().map(weight).collect();
+    }
+    Some(found)
+}
+
+/// The cubic with these values and slopes at 0 and 1.
+fn between([[a, slope_a], [b, slope_b]]: [[f64; 2]; 2], u: f64) -> f64 {
+    let v = 1.0 - u;
+    a * v * v * (1.0 + 2.0 * u) + b * u * u * (1.0 + 2.0 * v) + u * v * (slope_a * v - slope_b * u)
+}
+
+/// Whether pulses that were found without it show that it is hum: it is seen before the first one, and
+/// they are much narrower than what cubics follow.
+pub(super) fn is_hum(found: &Found, samples: &[f64], without: &[f64], interval_s: f64) -> bool {
+    let narrow = |pulse: &Pulse| pulse.width_samples * interval_s <= WIDEST * HALF_S;
+    let Some(first) = found.incident.filter(|_| found.wall.is_some()) else { return false };
+    let end = first.at.saturating_sub((MARGIN * first.width_samples) as usize);
+    if !found.pulses().all(narrow) || end as f64 * interval_s < HALF_S {
+        return false;
+    }
+    let variance = |samples: &[f64]| {
+        let means = samples[..end].chunks_exact(end / PARTS).map(mean);
+        squares_about_mean(&means.collect::<Vec<_>>())
+    };
+    variance(samples) > SIGNIFICANT * variance(without)
 }

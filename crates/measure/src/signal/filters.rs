@@ -125,13 +125,12 @@ fn running_mean(values: &[f64], length: usize) -> Vec<f64> {
         return values.to_vec();
     }
     let half = length / 2;
-    let mut sums = vec![0.0];
-    sums.reserve(values.len());
-    let mut sum = 0.0;
-    sums.extend(values.iter().map(|value| {
+    let (mut sums, mut sum) = (Vec::with_capacity(values.len() + 1), 0.0);
+    sums.push(sum);
+    for value in values {
         sum += value;
-        sum
-    }));
+        sums.push(sum);
+    }
     let mean = |i: usize| {
         let (from, to) = (i.saturating_sub(half), (i + half + 1).min(values.len()));
         (sums[to] - sums[from]) / (to - from) as f64

@@ -3,9 +3,8 @@
 use std::borrow::Cow;
 
 use crate::error::{MeasureError, Result};
-use crate::signal::drift::{Detrended, MARGIN};
+use crate::signal::drift::{self, Detrended, MARGIN};
 use crate::signal::find::conditioned_pulses;
-use crate::signal::hum;
 use crate::signal::pick::{PulseSamples, pick};
 use crate::signal::tones::Tones;
 use crate::signal::{
@@ -158,13 +157,13 @@ fn without_hum(
     interval_s: f64,
     (recorded, find): (Channels<'_>, &FindOptions),
 ) -> Result<(Found, Vec<Option<Vec<f64>>>)> {
-    let mut calm: Vec<_> = channels.iter().map(|one| hum::without_hum(one, interval_s)).collect();
+    let mut calm: Vec<_> = channels.iter().map(|one| drift::without_hum(one, interval_s)).collect();
     if calm.iter().any(Option::is_some) {
         let either: Vec<&[f64]> =
             calm.iter().zip(channels).map(|(calm, own)| calm.as_deref().unwrap_or(own)).collect();
         if let Ok(found) = conditioned_pulses(channels_of(&either), recorded, find) {
             for (calm, own) in calm.iter_mut().zip(channels) {
-                *calm = calm.take().filter(|calm| hum::is_hum(&found, own, calm, interval_s));
+                *calm = calm.take().filter(|calm| drift::is_hum(&found, own, calm, interval_s));
             }
             if calm.iter().any(Option::is_some) {
                 return Ok((found, calm));
@@ -214,7 +213,8 @@ fn with_drift(
     interval_s: f64,
 ) -> Picks {
     let last = drifts.len() - 1;
-    let mut widen = |pick: &mut Picked, kind: PulseKind| {
+    for kind in PulseKind::ALL {
+        let Some(mut pick) = picks.pulse(kind) else { continue };
         let which = usize::from(kind == PulseKind::Wall);
         let (drift, tones) = (&drifts[which.min(last)], &tones[which.min(last)]);
         if drift.is_some() || tones.is_some() {
@@ -226,11 +226,9 @@ fn with_drift(
             if let Some(samples) = &mut samples[kind as usize] {
                 samples.of_drift_s = error_s;
             }
+            picks.set(kind, pick);
         }
-    };
-    widen(&mut picks.incident, PulseKind::Incident);
-    widen(&mut picks.wall, PulseKind::Wall);
-    picks.reflected.iter_mut().for_each(|back| widen(back, PulseKind::Reflected));
+    }
     picks
 }
 

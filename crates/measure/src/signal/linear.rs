@@ -97,6 +97,22 @@ impl<const N: usize> NormalEquations<N> {
 }
 
 impl<const N: usize> LinearSolution<N> {
+    /// Least squares of equations Σ row_k · parameter_k = value for so many parameters; `None` if they
+    /// do not determine every one.
+    pub(crate) fn of(
+        size: usize,
+        equations: impl Iterator<Item = ([f64; N], f64)>,
+    ) -> Option<Self> {
+        let mut normal = NormalEquations::new(size);
+        equations.for_each(|(row, value)| normal.add(&row, value));
+        normal.solve()
+    }
+
+    /// Σ row_k · parameter_k.
+    pub(crate) fn value(&self, row: &[f64; N]) -> f64 {
+        row.iter().zip(self.values).take(self.size).map(|(term, c)| term * c).sum()
+    }
+
     /// Variance of Σ row_k · parameter_k for unit noise.
     pub(crate) fn variance(&self, row: &[f64; N]) -> f64 {
         let covariances = self.covariance_with(row);
@@ -115,9 +131,9 @@ impl<const N: usize> LinearSolution<N> {
 }
 
 /// Where a Levenberg–Marquardt search ended: the model, and the normal equations of a step from it.
-pub(crate) struct Optimum<M> {
+pub(crate) struct Optimum<M, const N: usize = MOST> {
     pub(crate) model: M,
-    pub(crate) normal: NormalEquations,
+    pub(crate) normal: NormalEquations<N>,
     pub(crate) squares: f64,
 }
 
@@ -125,12 +141,12 @@ pub(crate) struct Optimum<M> {
 ///
 /// `equations` returns the normal equations of a step from a model and the model's sum of squares,
 /// or nothing where a model is out of bounds; `converged` compares two successive models.
-pub(crate) fn levenberg_marquardt<M>(
+pub(crate) fn levenberg_marquardt<M, const N: usize>(
     start: M,
-    equations: impl Fn(&M) -> Option<(NormalEquations, f64)>,
-    moved: impl Fn(&M, &Row) -> M,
+    equations: impl Fn(&M) -> Option<(NormalEquations<N>, f64)>,
+    moved: impl Fn(&M, &[f64; N]) -> M,
     converged: impl Fn(&M, &M) -> bool,
-) -> Option<Optimum<M>> {
+) -> Option<Optimum<M, N>> {
     let (normal, squares) = equations(&start)?;
     let mut at = Optimum { model: start, normal, squares };
     let mut damping = 1e-3;
@@ -158,7 +174,6 @@ pub(crate) fn levenberg_marquardt<M>(
 pub(crate) struct LocalPolynomial {
     pub(crate) centre: f64,
     pub(crate) half: f64,
-    pub(crate) degree: usize,
     pub(crate) solution: LinearSolution,
     pub(crate) residual: f64,
     pub(crate) freedom: f64,
@@ -190,16 +205,12 @@ impl LocalPolynomial {
         }
         let part = values.get(low as usize..values.len().min(high as usize + 1))?;
         let degree = degree.min(MOST - 1).min(part.len().checked_sub(2)?);
-        let mut normal = NormalEquations::new(degree + 1);
         let u = |i: usize| (first + low + i as f64 - centre) / half;
-        for (i, value) in part.iter().enumerate() {
-            normal.add(&powers(u(i)), *value);
-        }
+        let equations = part.iter().enumerate().map(|(i, value)| (powers(u(i)), *value));
         let mut polynomial = Self {
             centre,
             half,
-            degree,
-            solution: normal.solve()?,
+            solution: LinearSolution::of(degree + 1, equations)?,
             residual: 0.0,
             freedom: (part.len() - degree - 1) as f64,
         };
@@ -211,7 +222,7 @@ impl LocalPolynomial {
 
     pub(crate) fn at(&self, u: f64) -> Derivatives {
         let (mut value, mut slope, mut curvature) = (0.0, 0.0, 0.0);
-        for c in self.solution.values[..=self.degree].iter().rev() {
+        for c in self.solution.values[..self.solution.size].iter().rev() {
             curvature = curvature * u + 2.0 * slope;
             slope = slope * u + value;
             value = value * u + c;

@@ -30,7 +30,6 @@ mod drift;
 mod filters;
 mod find;
 mod flight;
-mod hum;
 mod linear;
 mod pick;
 mod power_law;
@@ -58,5 +57,6 @@ pub use self::{
     },
 };
 pub(crate) use self::{
-    filters::invert_high_pass, flight::mean_systematic, pick::pool, statistics::ratios_at_common,
+    filters::invert_high_pass, flight::mean_systematic, pick::pool, statistics::extremes,
+    statistics::ratios_at_common,
 };

@@ -1,7 +1,7 @@
 //! Spikes: one or two samples that stand out of a signal that is smooth for its noise.
 
-use crate::signal::linear::{NormalEquations, Row, powers};
-use crate::signal::statistics::{NORMAL_MAD, median};
+use crate::signal::linear::{LinearSolution, powers};
+use crate::signal::statistics::{Estimate, NORMAL_MAD, median};
 use std::borrow::Cow;
 use std::collections::HashSet;
 
@@ -96,19 +96,14 @@ fn least_noise(samples: &[f64], stride: usize) -> f64 {
 /// What a sample should be, if it is a spike.
 fn expected(samples: &[f64], at: usize, noise: f64) -> Option<f64> {
     let tries = REACHES.iter().filter_map(|reach| interpolated(samples, at, *reach, noise));
-    let best = tries.min_by(|a, b| a.error.total_cmp(&b.error))?;
+    let best = tries.min_by(|a, b| a.sigma.total_cmp(&b.sigma))?;
     let off = (samples[at] - best.value).abs();
-    (off > STANDS_OUT * best.error).then_some(best.value)
+    (off > STANDS_OUT * best.sigma).then_some(best.value)
 }
 
-/// A sample interpolated from its neighbours, and the standard error of its difference from that.
-struct Interpolated {
-    value: f64,
-    error: f64,
-}
-
-/// By the neighbours within reach, without those that stand out themselves.
-fn interpolated(samples: &[f64], at: usize, reach: usize, noise: f64) -> Option<Interpolated> {
+/// A sample by the neighbours within reach, without those that stand out themselves, and the standard
+/// error of its difference from that.
+fn interpolated(samples: &[f64], at: usize, reach: usize, noise: f64) -> Option<Estimate> {
     let window = at.saturating_sub(reach)..(at + reach + 1).min(samples.len());
     let mut members: Vec<usize> = window.filter(|sample| *sample != at).collect();
     for _ in 0..=MOST_NEIGHBOURS {
@@ -129,20 +124,13 @@ fn interpolate(
     members: &[usize],
     (at, reach): (usize, usize),
     noise: f64,
-) -> Option<(Interpolated, Option<usize>)> {
+) -> Option<(Estimate, Option<usize>)> {
     let freedom = members.len().checked_sub(DEGREE + 1)?;
     let freedom = Some(freedom).filter(|freedom| *freedom >= LEAST_FREEDOM)? as f64;
     let row = |sample: usize| powers((sample as f64 - at as f64) / reach as f64);
-    let mut normal = NormalEquations::new(DEGREE + 1);
-    for member in members {
-        normal.add(&row(*member), samples[*member]);
-    }
-    let fit = normal.solve()?;
-    let value = |row: &Row| -> f64 {
-        let terms = row.iter().zip(&fit.values).take(DEGREE + 1);
-        terms.map(|(power, coefficient)| power * coefficient).sum()
-    };
-    let miss = |member: &usize| (samples[*member] - value(&row(*member))).powi(2);
+    let equations = members.iter().map(|member| (row(*member), samples[*member]));
+    let fit = LinearSolution::of(DEGREE + 1, equations)?;
+    let miss = |member: &usize| (samples[*member] - fit.value(&row(*member))).powi(2);
     let squares: f64 = members.iter().map(miss).sum();
     // Residuals of members left out one by one follow from one fit: r²/(1 − h).
     let studentised = |member: &usize| {
@@ -153,7 +141,7 @@ fn interpolate(
     let (worst, ratio) = ratios.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let own = row(at);
     let deviation = (squares / freedom).sqrt().max(noise);
-    let interpolated =
-        Interpolated { value: value(&own), error: deviation * (1.0 + fit.variance(&own)).sqrt() };
+    let sigma = deviation * (1.0 + fit.variance(&own)).sqrt();
+    let interpolated = Estimate { value: fit.value(&own), sigma };
     Some((interpolated, (ratio > STANDS_OUT * STANDS_OUT).then_some(worst)))
 }

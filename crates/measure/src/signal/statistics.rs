@@ -32,6 +32,31 @@ pub fn median(values: &[f64]) -> Option<f64> {
     Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+pub(crate) fn squares_about_mean(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    values.iter().map(|value| (value - mean).powi(2)).sum()
+}
+
+/// Least and largest number, eight lanes at a time; 0 of none.
+pub(crate) fn extremes(samples: &[f64]) -> (f64, f64) {
+    let start = samples.first().copied().unwrap_or(0.0);
+    let (mut low, mut high) = ([start; 8], [start; 8]);
+    let (whole, rest) = samples.as_chunks::<8>();
+    for chunk in whole {
+        for (lane, x) in chunk.iter().enumerate() {
+            low[lane] = if *x < low[lane] { *x } else { low[lane] };
+            high[lane] = if *x > high[lane] { *x } else { high[lane] };
+        }
+    }
+    let low = low.iter().chain(rest).copied().fold(start, f64::min);
+    let high = high.iter().chain(rest).copied().fold(start, f64::max);
+    (low, high)
+}
+
 pub(crate) fn median_and_spread(values: &[f64]) -> Option<(f64, f64)> {
     let centre = median(values)?;
     let far: Vec<f64> = values.iter().map(|x| (x - centre).abs()).collect();

@@ -1,8 +1,8 @@
 //! Sines under a shot, harmonics of the mains or a supply's ripple, as the record before it shows them.
 
 use crate::signal::drift::time_error;
-use crate::signal::linear::{LinearSolution, NormalEquations};
-use crate::signal::statistics::median;
+use crate::signal::linear::LinearSolution;
+use crate::signal::statistics::{mean, median};
 use std::f64::consts::{LN_2, PI};
 
 /// Longest stretch before a shot to which sines are fitted, and means of samples in it, in s.
@@ -52,7 +52,6 @@ impl Tones {
         if count < FEWEST {
             return None;
         }
-        let mean = |part: &[f64]| part.iter().sum::<f64>() / length as f64;
         let means: Vec<f64> = lead.chunks_exact(length).map(mean).collect();
         let half = 0.5 * (count * length) as f64;
         let most_hz = HIGHEST_HZ.min(0.25 / (length as f64 * interval_s));
@@ -186,23 +185,19 @@ fn row(tones: &[Tone], u: f64) -> Unknowns {
 }
 
 fn solved(values: &[f64], tones: &[Tone], size: usize) -> Option<LinearSolution<UNKNOWNS>> {
-    let mut normal = NormalEquations::new(size);
     let rows = values.iter().enumerate();
-    rows.for_each(|(i, value)| normal.add(&row(tones, place(i, values.len())), *value));
-    normal.solve()
+    let equations = rows.map(|(i, value)| (row(tones, place(i, values.len())), *value));
+    LinearSolution::of(size, equations)
 }
 
 /// Fits the cubic and the sines' parts at their cycles; returns what is left of the means.
 fn less_sines(means: &[f64], tones: &mut [Tone]) -> Option<Vec<f64>> {
     let size = SLOW + 2 * tones.len();
-    let values = solved(means, tones, size)?.values;
-    for (tone, parts) in tones.iter_mut().zip(values[SLOW..size].chunks_exact(2)) {
+    let fit = solved(means, tones, size)?;
+    for (tone, parts) in tones.iter_mut().zip(fit.values[SLOW..size].chunks_exact(2)) {
         (tone.cosine, tone.sine) = (parts[0], parts[1]);
     }
-    let model = |i: usize| {
-        let row = row(tones, place(i, means.len()));
-        row.iter().zip(&values).take(size).map(|(part, value)| part * value).sum::<f64>()
-    };
+    let model = |i: usize| fit.value(&row(tones, place(i, means.len())));
     Some(means.iter().enumerate().map(|(i, mean)| mean - model(i)).collect())
 }
 

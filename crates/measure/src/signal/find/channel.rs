@@ -4,7 +4,7 @@ use super::{Normalisation, Polarity, Pulse, PulseKind};
 use crate::error::{MeasureError, Result, all_finite};
 use crate::signal::baseline::{Baseline, baseline};
 use crate::signal::filters::triangular_mean;
-use crate::signal::statistics::{NORMAL_MAD, median, median_and_spread};
+use crate::signal::statistics::{NORMAL_MAD, extremes, median, median_and_spread};
 use std::ops::Range;
 
 /// Samples averaged for a coarse view: noise is halved, a pulse of some ten samples stays.
@@ -72,16 +72,13 @@ impl<'a> ChannelSignal<'a> {
         })
     }
 
-    fn block_height(&self, block: usize) -> f64 {
-        let value = self.blocks.get(block).copied();
-        value.map_or(0.0, |value| self.normalisation.height(value))
-    }
-
     pub(super) fn largest_block(&self, from: f64, to: f64) -> Option<(usize, f64)> {
         let block = |sample: f64| (sample / BLOCK as f64).clamp(0.0, self.blocks.len() as f64);
-        let blocks = block(from) as usize..block(to) as usize;
-        let largest = blocks.map(|block| (block * BLOCK, self.block_height(block)));
-        largest.reduce(|best, next| if next.1 > best.1 { next } else { best })
+        let blocks = self.blocks.iter().enumerate().take(block(to) as usize);
+        let heights = blocks.map(|(at, mean)| (at * BLOCK, self.normalisation.height(*mean)));
+        heights
+            .skip(block(from) as usize)
+            .reduce(|best, next| if next.1 > best.1 { next } else { best })
     }
 }
 
@@ -152,22 +149,6 @@ fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline
         correlation: 1.0,
         quiet_samples: 0,
     })
-}
-
-/// Least and largest, eight lanes at a time.
-pub(super) fn extremes(samples: &[f64]) -> (f64, f64) {
-    let start = samples.first().copied().unwrap_or(0.0);
-    let (mut low, mut high) = ([start; 8], [start; 8]);
-    let (whole, rest) = samples.as_chunks::<8>();
-    for chunk in whole {
-        for (lane, x) in chunk.iter().enumerate() {
-            low[lane] = if *x < low[lane] { *x } else { low[lane] };
-            high[lane] = if *x > high[lane] { *x } else { high[lane] };
-        }
-    }
-    let low = low.iter().chain(rest).copied().fold(start, f64::min);
-    let high = high.iter().chain(rest).copied().fold(start, f64::max);
-    (low, high)
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -340,9 +321,7 @@ impl<'a> Smoothed<'a> {
 
     /// Whether the signal between two pulses stays above a tenth of the lower.
     pub(super) fn overlaps(&self, one: &Pulse, other: &Pulse) -> bool {
-        let between = (one.at..=other.at).map(|i| self.height(i));
-        let valley = between.fold(f64::INFINITY, f64::min);
         let lower = one.height.min(other.height);
-        valley > (0.1 * lower).max(5.0 * self.noise)
+        self.least(one.at, other.at) > (0.1 * lower).max(5.0 * self.noise)
     }
 }

@@ -1,12 +1,13 @@
 //! Clipped tops, digitiser steps, and competing maxima of the pulses found.
 
-use super::channel::{Smoothed, SmoothedMaximum, VALLEY, extremes};
+use super::channel::{Smoothed, SmoothedMaximum, VALLEY};
 use super::select::NARROWEST;
 use super::{
     Channels, CompetingMaximum, DigitiserRange, FindOptions, Found, Pulse, PulseKind, QualityFlag,
 };
 use crate::signal::Estimate;
 use crate::signal::pick::{ChannelView, clipped_top, maximum_by_fit};
+use crate::signal::statistics::extremes;
 
 /// Share of a whole pulse's height below which no other pulse of its channel is clipped.
 const AS_HIGH: f64 = 0.9;

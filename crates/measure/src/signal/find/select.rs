@@ -1,8 +1,8 @@
 //! Which maximum is which pulse.
 
+use super::FindOptions;
 use super::channel::{ChannelSignal, Smoothed, SmoothedMaximum};
-use super::{FindOptions, PulseLimits};
-use crate::signal::linear::{MOST, NormalEquations};
+use crate::signal::linear::LinearSolution;
 use std::f64::consts::LN_2;
 use std::ops::Range;
 
@@ -29,20 +29,15 @@ pub(super) struct PulseSelection {
 }
 
 /// Times in samples that follow from the first pulse's width and the row, where it is known.
-struct Timing {
+struct Timing<'a> {
     width: f64,
-    beads: Option<(usize, usize)>,
-    limits: PulseLimits,
+    options: &'a FindOptions,
 }
 
-impl Timing {
-    fn new(channel: &ChannelSignal<'_>, options: &FindOptions) -> Self {
-        Self { width: channel.width, beads: options.beads, limits: options.limits }
-    }
-
+impl Timing<'_> {
     fn expected(&self) -> Option<f64> {
-        let (beads, sensor) = self.beads?;
-        Some((beads as f64 - sensor as f64 + 0.5) / self.limits.width_beads * self.width)
+        let (beads, sensor) = self.options.beads?;
+        Some((beads as f64 - sensor as f64 + 0.5) / self.options.limits.width_beads * self.width)
     }
 
     fn wall_window(&self) -> (f64, f64) {
@@ -53,7 +48,7 @@ impl Timing {
 
     /// Latest reflected pulse in incident times: before the wall is reached a second time.
     fn latest_reflected(&self) -> f64 {
-        self.beads.map_or(2.0, |(beads, sensor)| {
+        self.options.beads.map_or(2.0, |(beads, sensor)| {
             let to_and_fro = 2.0 * sensor as f64 / (beads - sensor) as f64;
             (0.9 * (2.0 + to_and_fro)).min(3.0)
         })
@@ -64,7 +59,7 @@ impl Timing {
     /// lie between that and what comes next at the sensor or at the wall, by way of the striker's
     /// end.
     fn reflected_over_incident(&self) -> Range<f64> {
-        self.beads.map_or(0.8..1.8, |(beads, sensor)| {
+        self.options.beads.map_or(0.8..1.8, |(beads, sensor)| {
             let next = 2.0 * sensor as f64 / (beads - sensor) as f64;
             0.85..(1.0 + 0.75 * next).clamp(1.25, 1.8)
         })
@@ -78,7 +73,7 @@ impl Timing {
 
     /// Whether a pulse is too low beside the incident one to be the wall's.
     fn is_too_low_for_wall(&self, pulse: &SmoothedMaximum, incident: &SmoothedMaximum) -> bool {
-        pulse.height < self.limits.wall_over_incident_min * incident.height
+        pulse.height < self.options.limits.wall_over_incident_min * incident.height
     }
 }
 
@@ -91,7 +86,7 @@ pub(super) fn largest(maxima: &[SmoothedMaximum], from: f64, to: f64) -> Option<
 
 /// Last sample that matters in a summed channel: three incident times after the wall's pulse.
 pub(super) fn end_of_interest(channel: &ChannelSignal<'_>, options: &FindOptions) -> usize {
-    let (from, to) = Timing::new(channel, options).wall_window();
+    let (from, to) = Timing { width: channel.width, options }.wall_window();
     // Beyond the first pulse's own fall, which may be higher than all that follows.
     let from = from.max(3.0 * channel.width);
     let incident = channel.first as f64 + 0.5 * channel.width;
@@ -105,7 +100,7 @@ pub(super) fn end_of_interest(channel: &ChannelSignal<'_>, options: &FindOptions
 
 pub(super) fn summed(smoothed: &Smoothed<'_>, options: &FindOptions) -> PulseSelection {
     let (channel, maxima) = (smoothed.channel, &smoothed.maxima);
-    let timing = Timing::new(channel, options);
+    let timing = Timing { width: channel.width, options };
     let width = channel.width;
     let start = channel.first as f64 - width;
     let first = largest(maxima, start, channel.first as f64 + 1.5 * width);
@@ -147,9 +142,9 @@ fn identify_two(
     selection: PulseSelection,
     [first, second]: [SmoothedMaximum; 2],
     channel: &ChannelSignal<'_>,
-    timing: &Timing,
+    timing: &Timing<'_>,
 ) -> PulseSelection {
-    let limits = &timing.limits;
+    let limits = &timing.options.limits;
     let time = (second.at - first.at) as f64;
     let may_be_reflected = second.height < limits.reflected_over_incident_max * first.height;
     if let Some(expected) = timing.expected() {
@@ -184,7 +179,7 @@ fn half_way(
     maxima: &[SmoothedMaximum],
     first: SmoothedMaximum,
     wall: SmoothedMaximum,
-    timing: &Timing,
+    timing: &Timing<'_>,
 ) -> SmoothedMaximum {
     let (began, whole) = (first.at as f64, (wall.at - first.at) as f64);
     let least = timing.expected().map_or(0.5, |expected| {
@@ -201,7 +196,7 @@ fn is_doubtful(
     maxima: &[SmoothedMaximum],
     [first, incident, wall]: [SmoothedMaximum; 3],
     reflected: Option<SmoothedMaximum>,
-    timing: &Timing,
+    timing: &Timing<'_>,
 ) -> bool {
     let (began, time) = (incident.at as f64, (wall.at - incident.at) as f64);
     let between = largest(maxima, began + 0.25 * time, began + 0.75 * time);
@@ -226,7 +221,7 @@ pub(super) fn separate(
     options: &FindOptions,
 ) -> PulseSelection {
     let (channel, sensor) = (sensor.channel, &sensor.maxima);
-    let timing = Timing::new(channel, options);
+    let timing = Timing { width: channel.width, options };
     let Some(wall) = largest(&wall.maxima, 0.0, f64::INFINITY) else {
         return PulseSelection {
             maxima: [largest(sensor, 0.0, f64::INFINITY), None, None],
@@ -308,14 +303,12 @@ impl Smoothed<'_> {
         let reach = (REACH * width) as usize;
         let first = maximum.at.saturating_sub(reach);
         let last = (maximum.at + reach + 1).min(samples.len());
-        let mut normal = NormalEquations::new(terms);
-        for (i, sample) in samples[first..last].iter().enumerate() {
+        let equations = samples[first..last].iter().enumerate().map(|(i, sample)| {
             let u = ((first + i) as f64 - maximum.at as f64) / width;
-            let mut row = [0.0; MOST];
-            row[..4].copy_from_slice(&[(-4.0 * LN_2 * u * u).exp(), 1.0, u, u * u]);
-            normal.add(&row, normalisation.height(*sample));
-        }
+            ([(-4.0 * LN_2 * u * u).exp(), 1.0, u, u * u], normalisation.height(*sample))
+        });
         let noise = normalisation.baseline.broad_noise();
-        normal.solve().map_or(0.0, |found| found.values[0] / (noise * found.inverse[0][0].sqrt()))
+        LinearSolution::of(terms, equations)
+            .map_or(0.0, |found| found.values[0] / (noise * found.inverse[0][0].sqrt()))
     }
 }

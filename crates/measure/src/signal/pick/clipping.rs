@@ -2,8 +2,8 @@
 
 use super::ChannelView;
 use super::log_polynomial::{BellData, CUT_OFF, DEGREE, LEVEL, ShapePrior, WIDTH};
-use crate::signal::Pulse;
-use crate::signal::linear::{MOST, NormalEquations, Optimum, Row};
+use crate::signal::linear::{LinearSolution, MOST, Optimum, Row};
+use crate::signal::{Pulse, statistics};
 use std::f64::consts::{LN_2, TAU};
 
 /// Curvature of a whole pulse's logarithm at its maximum over that of a Gaussian as wide, mean and
@@ -102,8 +102,7 @@ fn samples(view: &ChannelView<'_>, centre: f64, half: f64, noise: f64) -> Option
     let together = (heights.len() / ENOUGH).max(1);
     let mean = |(number, of): (usize, &[f64])| {
         let at = (number * together) as f64 + 0.5 * (of.len() as f64 - 1.0);
-        let height = of.iter().sum::<f64>() / of.len() as f64;
-        ((start as f64 + at - centre) / half, height)
+        ((start as f64 + at - centre) / half, statistics::mean(of))
     };
     let points = heights.chunks(together).enumerate().map(mean);
     // Where a step of the digitiser exceeds the noise, neighbours are rounded the same way.
@@ -162,14 +161,12 @@ impl Flanks {
         let (first, last) = pulse.clipped?;
         let middle = 0.5 * (first as f64 + last as f64);
         let half = pulse.width_samples.max(4.0);
-        let mut normal = NormalEquations::new(3);
-        for (sample, height) in flank_samples(view, pulse, (first, last)) {
+        let samples = flank_samples(view, pulse, (first, last)).into_iter();
+        let equations = samples.map(|(sample, height)| {
             let u = (sample - middle) / half;
-            let mut row = [0.0; MOST];
-            row[..3].copy_from_slice(&[height, height * u, height * u * u]);
-            normal.add(&row, height * height.ln());
-        }
-        let [constant, slope, curvature, ..] = normal.solve()?.values;
+            ([height, height * u, height * u * u], height * height.ln())
+        });
+        let [constant, slope, curvature] = LinearSolution::of(3, equations)?.values;
         let u = -0.5 * slope / curvature;
         let found = Self {
             at: middle + half * u,

@@ -463,7 +463,6 @@ impl BellData {
         Some(LocalPolynomial {
             centre,
             half,
-            degree: self.degree,
             solution,
             residual: (squares / freedom).sqrt(),
             freedom,
@@ -484,11 +483,7 @@ impl Slope {
     fn new(bell: &LocalPolynomial, [a, b]: [f64; 2], u: f64) -> Self {
         let (a, b) = (a / bell.half, b / bell.half.powi(2));
         let rows = derivative_rows(u);
-        let of = |row: &Row| -> f64 {
-            let terms = row.iter().zip(&bell.solution.values);
-            terms.take(bell.degree + 1).map(|(r, c)| r * c).sum()
-        };
-        let [p, q, r, s] = rows.each_ref().map(of);
+        let [p, q, r, s] = rows.each_ref().map(|row| bell.solution.value(row));
         // y′ = p y, y″ = (q + p²) y, y‴ = (r + 3 p q + p³) y.
         let weights = [1.0 + 2.0 * a * p + 3.0 * b * (q + p * p), a + 3.0 * b * p, b];
         Self {

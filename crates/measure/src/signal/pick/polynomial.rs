@@ -122,23 +122,20 @@ fn fit_maximum(
     let reach = 2.0 * half + 2.0;
     let begun = pulse.at as f64;
     let (first, heights) = view.window(begun - reach, begun + reach);
-    let mut centre = begun;
-    for _ in 0..6 {
+    let (mut centre, mut left) = (begun, 6);
+    loop {
         let fit = LocalPolynomial::through(&heights, first as f64, centre, half, degree)?;
         let u = fit.maximum()?;
         let next = fit.sample(u).round();
-        if next == centre {
+        // Two neighbouring centres that point at each other: either will do.
+        if next == centre || left == 0 {
             return Some((fit, u));
         }
         if (next - begun).abs() > half + 2.0 {
             return None;
         }
-        centre = next;
+        (centre, left) = (next, left - 1);
     }
-    // Two neighbouring centres that point at each other: either will do.
-    let fit = LocalPolynomial::through(&heights, first as f64, centre, half, degree)?;
-    let u = fit.maximum()?;
-    Some((fit, u))
 }
 
 /// Half the width of the fit of the flank, in full widths at half maximum.

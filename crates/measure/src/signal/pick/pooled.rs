@@ -5,7 +5,7 @@
 
 use super::log_polynomial::{BellTop, CommonBell, NARROWER, ShapePrior, half_width};
 use super::{ChannelView, Picked, Systematic};
-use crate::signal::linear::{MOST, NormalEquations, Row};
+use crate::signal::linear::NormalEquations;
 use crate::signal::{Pulse, median};
 
 /// Samples that are kept on either side of a pulse, in halves of a whole pulse's fit.
@@ -96,17 +96,14 @@ impl PulseSamples {
                 let at = bell.polynomial.at(u);
                 let value = place.height * at.value.exp();
                 let by_time = -value * at.slope / (half * place.width);
-                let mut row: Row = [0.0; MOST];
-                row[..3].copy_from_slice(&[by_time, value, by_time * half * u]);
-                normal.add(&row, height - value);
+                normal.add(&[by_time, value, by_time * half * u], height - value);
                 squares += (height - value).powi(2);
                 count += 1.0;
             }
-            let mut row: Row = [0.0; MOST];
-            row[2] = noise / WIDTHS;
-            normal.add(&row, (1.0 - place.width) * row[2]);
+            let weight = noise / WIDTHS;
+            normal.add(&[0.0, 0.0, weight], (1.0 - place.width) * weight);
             let solution = normal.solve()?;
-            let [time, height, width, ..] = solution.values;
+            let [time, height, width] = solution.values;
             let variance = |k: usize| noise * noise * solution.inverse[k][k];
             place = Place {
                 time: place.time + time.clamp(-0.3 * half, 0.3 * half),

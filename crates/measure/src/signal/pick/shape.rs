@@ -3,7 +3,7 @@
 use super::{ChannelView, Picked, Systematic};
 use crate::error::{MeasureError, Result};
 use crate::signal::Pulse;
-use crate::signal::linear::{MOST, NormalEquations, Row, levenberg_marquardt};
+use crate::signal::linear::{NormalEquations, levenberg_marquardt};
 
 /// A pulse's shape cos^p of one half turn, and 0 beyond: 1 at its maximum, at z = 0; its full width
 /// at half maximum is 1. p = 6 is the force of a solitary wave of Hertz contacts in the long-wave
@@ -85,7 +85,7 @@ fn points(view: &ChannelView<'_>, pulse: &Pulse, width: f64) -> Vec<(f64, f64)> 
     points.map(|(sample, height)| (sample as f64, height)).collect()
 }
 
-fn normal(points: &[(f64, f64)], model: &[f64; 4], shape: &Shape) -> (NormalEquations, f64) {
+fn normal(points: &[(f64, f64)], model: &[f64; 4], shape: &Shape) -> (NormalEquations<4>, f64) {
     let [height, time, width, offset] = *model;
     let mut normal = NormalEquations::new(model.len());
     let mut squares = 0.0;
@@ -94,9 +94,7 @@ fn normal(points: &[(f64, f64)], model: &[f64; 4], shape: &Shape) -> (NormalEqua
         let (value, slope) = shape.value_slope(z);
         let residual = sample - offset - height * value;
         let by_time = -height * slope / width;
-        let mut row: Row = [0.0; MOST];
-        row[..4].copy_from_slice(&[value, by_time, by_time * z, 1.0]);
-        normal.add(&row, residual);
+        normal.add(&[value, by_time, by_time * z, 1.0], residual);
         squares += residual * residual;
     }
     (normal, squares)

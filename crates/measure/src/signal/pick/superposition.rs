@@ -2,6 +2,7 @@
 
 use super::ChannelView;
 use crate::signal::Pulse;
+use crate::signal::statistics::mean;
 
 /// Half widths of the rise from a pulse's maximum to where it has not begun, over two.
 const FOOT: f64 = 1.3;
@@ -121,8 +122,7 @@ impl ChannelView<'_> {
 
     fn mean(&self, from: f64, to: f64) -> (f64, f64) {
         let (_, heights) = self.window(from, to);
-        let count = heights.len() as f64;
-        (heights.iter().sum::<f64>() / count, count)
+        (mean(&heights), heights.len() as f64)
     }
 }
 
