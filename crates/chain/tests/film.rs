@@ -4,7 +4,7 @@ use crate::common::ensemble::settings;
 use crate::common::{self, close, cubic, hertz, shoot, viscoelastic};
 use hertzchain_chain::ensemble::{Precision, Shot, fire};
 use hertzchain_chain::laws::{FilmEntrained, Law, law};
-use hertzchain_chain::observe::{Trace, Tracer};
+use hertzchain_chain::observe::{Passage, Trace, Tracer};
 use hertzchain_chain::wave::{Budget, Limits, Method, Outcome, run};
 use hertzchain_chain::*;
 use serde_json::Value;
@@ -232,6 +232,51 @@ fn a_row_with_less_oil_loses_less_and_with_too_little_is_slower() {
     close(row(2e-14, 1e-9).0, found[4].0, 5e-5);
 }
 
+/// A short row with this much oil in each contact from the third to the wall.
+fn short_row(volume_m3: f64) -> (Passage, Outcome) {
+    let section = |contacts, laws| Section { contacts, laws, material: None };
+    let oil = limited(0.1, 16e-9, volume_m3);
+    let chain = Chain {
+        push: Push::Constant { force_n: 0.24 },
+        sections: vec![
+            section(0..=2, vec![hertz(), viscoelastic()]),
+            section(3..=12, vec![hertz(), viscoelastic(), oil]),
+        ],
+        ..common::row(12, 0.3, vec![])
+    };
+    shoot(&chain, 1e-8)
+}
+
+#[test]
+fn a_row_that_traps_all_its_oil_takes_no_more_than_twice_the_work() {
+    let flooded = short_row(f64::INFINITY).1.work;
+    for volume_m3 in [1e-9, 4e-14, 1e-14, 6e-15, 1e-15, 1e-17] {
+        let work = short_row(volume_m3).1.work;
+        // The rim gives way faster the more the missing oil softens it: 2.0 and 1.8 at the worst.
+        assert!(work.steps < 21 * flooded.steps / 10, "{volume_m3:e} {work:?} {flooded:?}");
+        assert!(work.force_passes < 2 * flooded.force_passes, "{volume_m3:e} {work:?}");
+    }
+}
+
+#[test]
+fn a_time_of_flight_is_smooth_in_the_volume_and_ends_at_the_dry_one() {
+    let tof_s = |volume_m3| short_row(volume_m3).0.tof_incident_s();
+    let (dry_s, flooded_s) = (tof_s(0.0), tof_s(f64::INFINITY));
+    for (volume_m3, relative) in [(1e-16, 5e-4), (1e-18, 1e-4), (1e-20, 1e-5)] {
+        close(tof_s(volume_m3), dry_s, relative);
+    }
+    close(tof_s(1e-9), flooded_s, 2e-5);
+    // Where it depends most on the volume, and where a contact traps all within its first load.
+    for start_m3 in [1e-14, 1e-16] {
+        let times_s: Vec<f64> = (0..12).map(|i| tof_s(start_m3 * 1.01_f64.powi(i))).collect();
+        let roughness = times_s
+            .windows(4)
+            .map(|t| (t[3] - 3.0 * t[2] + 3.0 * t[1] - t[0]).abs())
+            .fold(0.0, f64::max);
+        assert!(roughness < 3e-6 * dry_s, "{roughness:e} {times_s:?}");
+    }
+}
+
 #[test]
 fn limited_oil_loses_what_the_whole_contact_loses() {
     for case in reference("limited") {
@@ -254,8 +299,8 @@ fn limited_oil_loses_what_the_whole_contact_loses() {
         let lost = loss_j(&budget) / number(&case, "loss_j");
         // Flooded 0.90 to 0.97. Oil for half the film loses a tenth of what a flooded one does.
         let range = match case["over_trapped"].as_f64() {
-            Some(0.5) => 0.8..2.1,
-            Some(1.0) => 0.84..1.12,
+            Some(0.5) => 0.93..1.6,
+            Some(1.0) => 0.64..1.1,
             _ => 0.88..1.08,
         };
         assert!(range.contains(&lost), "{lost} {case}");

@@ -161,20 +161,20 @@ impl ContactState for DrainedFilm {
         true
     }
 
-    fn force_and_rates(&self, [w, ..]: [f64; 3], contact: Closed) -> (f64, [f64; 3]) {
+    fn force_and_rates(&self, [w, ..]: [f64; 4], contact: Closed) -> (f64, [f64; 4]) {
         match self.regime {
-            Regime::Dry => (0.0, [0.0; 3]),
-            Regime::Rigid => (self.rigid(contact), [0.0; 3]),
+            Regime::Dry => (0.0, [0.0; 4]),
+            Regime::Rigid => (self.rigid(contact), [0.0; 4]),
             Regime::Elastic => {
                 let film = (w - contact.overlap).max(NO_FILM * self.radius);
                 let (force, y) = (self.hertz(w), 0.5 * w.max(0.0) / film);
                 let drained = force * film / (self.drag(film) * (1.0 + y * (FLATTENING + y)));
-                (force - self.hertz(contact.overlap), [contact.rate - drained, 0.0, 0.0])
+                (force - self.hertz(contact.overlap), [contact.rate - drained, 0.0, 0.0, 0.0])
             }
         }
     }
 
-    fn energy_j(&self, _numbers_m: [f64; 3], overlap_m: f64) -> f64 {
+    fn energy_j(&self, _numbers_m: [f64; 4], overlap_m: f64) -> f64 {
         let energy = |w: f64| 0.4 * self.hertz(w) * w;
         match self.regime {
             Regime::Dry => 0.0,
@@ -183,7 +183,7 @@ impl ContactState for DrainedFilm {
         }
     }
 
-    fn until_change(&self, w: f64, contact: Closed) -> f64 {
+    fn until_change(&self, [w, ..]: [f64; 4], contact: Closed) -> f64 {
         match self.regime {
             Regime::Dry => 1.0,
             Regime::Rigid => self.until_elastic(contact),
@@ -191,7 +191,7 @@ impl ContactState for DrainedFilm {
         }
     }
 
-    fn accept(&mut self, [w, ..]: [f64; 3], contact: Closed) -> ([f64; 3], bool) {
+    fn accept(&mut self, [w, ..]: [f64; 4], contact: Closed) -> ([f64; 4], bool) {
         let was = self.regime;
         self.regime = match was {
             Regime::Dry if contact.overlap < 0.0 => Regime::Rigid,
@@ -209,7 +209,7 @@ impl ContactState for DrainedFilm {
             }
         };
         let number = if self.regime == Regime::Elastic { self.flattened } else { 0.0 };
-        ([number, 0.0, 0.0], was != self.regime)
+        ([number, 0.0, 0.0, 0.0], was != self.regime)
     }
 
     fn boxed(&self) -> Box<dyn ContactState> {

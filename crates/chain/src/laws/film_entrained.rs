@@ -19,7 +19,8 @@ use std::f64::consts::PI;
 ///
 /// A volume V of oil ends at a meniscus. The oil beyond, which is missing, would bear 12 η δ̇ ∫ W²/(2πr h³) dr
 /// with Hertz's gap h and W = ∫ (1 − (2/π) arcsin(a/r)) 2πr dr: by its share D of the rim's force, κ becomes
-/// φ κ, φ about e^{−D}. Where the oil outside hardly fills the inlet, β becomes s β.
+/// φ κ, φ about e^{−D}. Where the oil outside hardly fills the inlet, β becomes s β; where it is less than v = 0.01 a⁴/R*,
+/// the rim's force, squeezed or drawn, becomes ψ = 1 − e^{−V/v} of it, so that without oil the contact is Hertz's.
 ///
 /// The law never creates energy: F δ̇ is the change of E* (∫_0^a (δ − δ_e)² ds + κ a y²) − (2/5) K δ^{5/2} plus
 /// a loss in the rim that is not negative. A contact starts dry, at rest, and again after each gap.
@@ -48,6 +49,8 @@ const PRESSURE: [f64; 3] = [1.262, -0.159, 0.6045];
 const J: [f64; 2] = [0.08922, 0.05819];
 /// Least φ.
 const LEAST: f64 = 0.1;
+/// Oil that fills the inlet of a film of 3 % of a²/R*, in a⁴/R*.
+const INLET: f64 = 0.01;
 
 impl Term<5> for FilmEntrained {
     const INFO: LawInfo = LawInfo {
@@ -136,6 +139,7 @@ impl Term<5> for FilmEntrained {
                 drawn: false,
                 rate: 0.0,
                 film: 0.0,
+                wet: 1.0,
             })
         })
     }
@@ -172,59 +176,80 @@ impl Ring {
             true => wide * (past / rise).powf((1.0 - mean) / mean),
             false => 0.0,
         };
+        let swept =
+            self.radius * (self.radius + 2.0 * more * mean) + more * more * mean / (2.0 - mean);
         let push = (self.radius + more * mean) * past;
         let work = self.push + past * (0.5 * self.radius + more * mean * mean / (1.0 + mean));
         let radius = self.radius + more;
         let (push, work) = (self.push + push, self.work + past * work);
-        Self { radius, overlap, push, work, swept: self.swept_to(radius, overlap) }
-    }
-
-    /// ∫ a² dδ up to an edge beyond, between which and this ring a rises evenly.
-    fn swept_to(self, a: f64, overlap: f64) -> f64 {
-        let mean = (self.radius * (self.radius + a) + a * a) / 3.0;
-        self.swept + mean * (overlap - self.overlap)
+        Self { radius, overlap, push, work, swept: self.swept + swept * past }
     }
 }
 
-/// φ and s, what a limited volume leaves of a flooded rim's force and fresh film: of a film β G^n y in
-/// units of a²/R*, oil around the contact in a⁴/R*, and D over J.
-fn starved(film: f64, outside: f64, scale: f64) -> (f64, f64) {
-    // J = ∫ W²/(ξ h³) dξ from the meniscus on is 20.5 v^−0.2 near the edge and 35.0 v^−0.5 far away;
-    // between, within 4 %.
-    let root = outside.powf(0.08);
-    let lacking = scale * (root * root * J[0] + root.powi(5) * J[1]).powf(-1.25);
-    // Over the gap of Hertz the film takes oil too, on the area up to the meniscus, and w^2.5 + z w = 1
-    // for the width w of the wetted ring.
-    let ring = 1.6 * PI * 0.643 * outside.powf(0.4) + 1.6 * (PI * outside).sqrt();
-    let taken = film * ring / outside;
-    // The rim's overlap is larger by 1/√φ.
-    let mut rim = 1.0_f64;
-    for _ in 0..3 {
-        let wide = (1.0 + (taken / rim.sqrt()).powf(1.63)).powf(0.306);
-        rim = LEAST + (1.0 - LEAST) * (-lacking * wide / rim.cbrt() / (1.0 - LEAST)).exp();
+/// What a limited volume leaves of a flooded contact.
+#[derive(Clone, Copy)]
+struct Supply {
+    /// φ: of the rim's stiffness.
+    share: f64,
+    /// s: of the fresh film.
+    film: f64,
+    /// ψ: of the rim's force.
+    wet: f64,
+}
+
+impl Supply {
+    const FLOODED: Self = Self { share: 1.0, film: 1.0, wet: 1.0 };
+
+    /// Of a film β G^n y in units of a²/R*, oil around the contact in a⁴/R*, and D over J.
+    fn new(film: f64, outside: f64, scale: f64) -> Self {
+        // J = ∫ W²/(ξ h³) dξ from the meniscus on is 20.5 v^−0.2 near the edge and 35.0 v^−0.5 far away;
+        // between, within 4 %.
+        let root = outside.powf(0.08);
+        let lacking = scale * (root * root * J[0] + root.powi(5) * J[1]).powf(-1.25);
+        // Over the gap of Hertz the film takes oil too, on the area up to the meniscus, and w^2.5 + z w = 1
+        // for the width w of the wetted ring.
+        let ring = 1.6 * PI * 0.643 * outside.powf(0.4) + 1.6 * (PI * outside).sqrt();
+        let taken = film * ring / outside;
+        // The rim's overlap is larger by 1/√φ.
+        let mut rim = 1.0_f64;
+        for _ in 0..3 {
+            let wide = (1.0 + (taken / rim.sqrt()).powf(1.63)).powf(0.306);
+            rim = LEAST + (1.0 - LEAST) * (-lacking * wide / rim.cbrt() / (1.0 - LEAST)).exp();
+        }
+        // Half the ring at the edge in which the gap is less than the film.
+        let inlet = PI * film * (film / 1.2).cbrt().powi(2);
+        let film = -(-outside * rim / inlet.max(f64::MIN_POSITIVE)).exp_m1();
+        Self { share: rim, film, wet: Self::wet(outside) }
     }
-    // Half the ring at the edge in which the gap is less than the film.
-    let inlet = PI * film * (film / 1.2).cbrt().powi(2);
-    (rim, -(-outside * rim / inlet.max(f64::MIN_POSITIVE)).exp_m1())
+
+    fn wet(outside: f64) -> f64 {
+        -(-outside / INLET).exp_m1()
+    }
 }
 
 /// The edge of a contact that grows.
-#[derive(Default)]
 struct Reach {
     /// Radius a in m.
     radius: f64,
-    /// Fresh film over u: β G^n √(R*/a).
+    /// Fresh film over u: s β G^n √(R*/(φ a)).
     film: f64,
-    /// 3 d ln (film over u)/d ln u at constant a: n x G′/G, and of s/√φ.
+    /// 3 d ln (film over u)/d ln u at constant a of a flooded contact: n x G′/G.
     slope: f64,
-    /// φ.
-    share: f64,
+    supply: Supply,
     /// Cube root of a y, and G, where an oil thickens.
     of_rim: Option<(f64, f64)>,
 }
 
+impl Reach {
+    /// Where no film is left.
+    fn dry(radius: f64) -> Self {
+        Self { radius, film: 0.0, slope: 0.0, supply: Supply::FLOODED, of_rim: None }
+    }
+}
+
 /// One contact with oil. Its numbers are u = y √(a/R*), whose rate √(a/R*) (δ̇ − loss) has neither ȧ nor
-/// a pole at a = 0, and, since the last ring, ∫ a dδ/(0.02 R*) and ∫∫ a dδ dδ/(0.02 R*)², all in m.
+/// a pole at a = 0, and, since the last ring, ∫ a dδ/(0.02 R*), ∫∫ a dδ dδ/(0.02 R*)² and, of a limited
+/// volume, ∫ a² dδ/(0.02 R*)², all in m.
 #[derive(Clone, Debug)]
 struct EntrainedFilm {
     radius: f64,
@@ -247,6 +272,8 @@ struct EntrainedFilm {
     rate: f64,
     /// Fresh film over u there.
     film: f64,
+    /// Least ψ since the rim was last relaxed: a ψ that rises would create energy.
+    wet: f64,
 }
 
 /// Makes errors of ∫ a dδ errors of an overlap: a contact's radius over R*.
@@ -257,6 +284,9 @@ const TURNS: f64 = 1e-6;
 
 /// Rim over R* that counts as relaxed, over `TURNS`.
 const SLIGHT: f64 = 1e-6;
+
+/// Part of u over which a slope is taken.
+const SLOPE: f64 = 1e-4;
 
 impl EntrainedFilm {
     /// The rim of area a y = c³ of oil that thickens: G and x G′/G there.
@@ -269,58 +299,82 @@ impl EntrainedFilm {
         (x / less, 1.0 - x * (1.0 - less) / less)
     }
 
-    /// What the volume leaves of a contact at an edge that is not yet a ring, or is one.
-    fn supply(&self, unknown: f64, edge: &Ring) -> (f64, f64) {
-        let (r, a) = (self.radius, edge.radius);
-        if unknown <= 0.0 || self.volume == f64::INFINITY || a < SLIGHT * r {
-            return (1.0, 1.0);
+    /// What the volume leaves of a contact with its edge at radius a, at (δ, ∫ a² dδ).
+    fn supply(&self, unknown: f64, a: f64, (overlap, swept): (f64, f64)) -> Supply {
+        let r = self.radius;
+        if self.volume == f64::INFINITY || a < SLIGHT * r {
+            return Supply::FLOODED;
+        }
+        // ∫ (s²/R* − δ_e) 2πs ds is what the contact has trapped.
+        let trapped = PI * (a * a * (0.5 * a * a / r - overlap) + swept);
+        let outside = ((self.volume - trapped) * r / a.powi(4)).max(SLIGHT);
+        if unknown <= 0.0 {
+            return Supply { wet: Supply::wet(outside), ..Supply::FLOODED };
         }
         let rim = unknown * (a * r).sqrt();
         let thick = if self.inlet > 0.0 { self.thickening(rim.cbrt()).0 } else { 1.0 };
         let film = LEFT * thick.powf(PRESSURE[2]) * rim * r / a.powi(3);
-        // ∫ (s²/R* − δ_e) 2πs ds is what the contact has trapped.
-        let trapped = PI * (a * a * (0.5 * a * a / r - edge.overlap) + edge.swept);
-        let outside = ((self.volume - trapped) * r / a.powi(4)).max(SLIGHT);
         let scale = 6.0 / PI * (STIFF * rim * r).cbrt().powi(2) / (a * a);
-        starved(film, outside, scale * RIM[0].powf(-5.0 / 3.0) * thick.powf(-PRESSURE[1]))
+        Supply::new(film, outside, scale * RIM[0].powf(-5.0 / 3.0) * thick.powf(-PRESSURE[1]))
     }
 
-    /// Solves a² = R* (δ + fresh film) by Newton, from the film of the last step.
-    fn reach(&self, unknown: f64, root: f64) -> Reach {
-        let mut reach = self.reach_of(unknown, root, 1.0);
-        if unknown <= 0.0 || self.volume == f64::INFINITY {
-            return reach;
-        }
-        let overlap = root * root;
-        let last = if self.advances { self.outer() } else { self.held(overlap) };
-        let swept = last.swept_to(reach.radius, overlap);
-        let edge = Ring { radius: reach.radius, overlap, swept, ..last };
-        let [less, more] = [1.0, 1.0 + SLIGHT].map(|part| self.supply(part * unknown, &edge));
-        let (share, film) = less;
-        let change = (more.1 / film).ln() - 0.5 * (more.0 / share).ln();
-        reach = self.reach_of(unknown / share.sqrt(), root, film);
-        Reach {
-            share,
-            film: reach.film / share.sqrt(),
-            slope: reach.slope + 3.0 * change / SLIGHT,
-            ..reach
-        }
+    /// An edge at radius a, wherever a² = R* (δ + fresh film) has it.
+    fn edge(&self, unknown: f64, a: f64, at: (f64, f64)) -> Reach {
+        let supply = self.supply(unknown, a, at);
+        let cube_root = (unknown * (a * self.radius / supply.share).sqrt()).cbrt();
+        let (thick, steepness) = self.thickening(cube_root);
+        let film = supply.film * LEFT * (self.radius / (supply.share * a)).sqrt();
+        let of_rim = (self.inlet > 0.0).then_some((cube_root, thick));
+        let (film, slope) = (film * thick.powf(PRESSURE[2]), PRESSURE[2] * steepness);
+        Reach { radius: a, film, slope, supply, of_rim }
     }
 
-    /// Solves a² = R* (δ + s β G^n u √(R*/a)) by Newton in √a.
-    fn reach_of(&self, unknown: f64, root: f64, left: f64) -> Reach {
+    /// Solves a² = R* (δ + fresh film) at (δ, ∫ a² dδ), from the film of the last step.
+    fn reach(&self, unknown: f64, root: f64, swept: f64) -> Reach {
+        if unknown <= 0.0 || self.volume == f64::INFINITY || self.film == 0.0 {
+            let flooded = self.reach_flooded(unknown, root);
+            if self.volume == f64::INFINITY || flooded.radius == 0.0 {
+                return flooded;
+            }
+            return self.reach_from(flooded.radius, unknown, (root * root, swept));
+        }
+        let film = self.film * unknown;
+        self.reach_from((self.radius * (root * root + film)).sqrt(), unknown, (root * root, swept))
+    }
+
+    /// Solves it by secants from a radius: the further out the edge, the less oil is left for a film.
+    fn reach_from(&self, from: f64, unknown: f64, at: (f64, f64)) -> Reach {
+        let mut reach = self.edge(unknown, from, at);
+        let beyond = |reach: &Reach| {
+            reach.radius - self.radius * (at.0 + reach.film * unknown.max(0.0)) / reach.radius
+        };
+        let (mut off, mut steep) = (beyond(&reach), 2.4);
+        for _ in 0..40 {
+            let step = off / steep;
+            if step.abs() <= 1e-12 * reach.radius {
+                break;
+            }
+            reach = self.edge(unknown, reach.radius - step, at);
+            let now = beyond(&reach);
+            (off, steep) = (now, ((off - now) / step).clamp(1.0, 20.0));
+        }
+        reach
+    }
+
+    /// Solves a² = R* (δ + β G^n u √(R*/a)) by Newton in √a.
+    fn reach_flooded(&self, unknown: f64, root: f64) -> Reach {
         let root_radius = self.radius.sqrt();
         let dry = root_radius * root;
         if unknown <= 0.0 {
-            return Reach { radius: dry, share: 1.0, ..Reach::default() };
+            return Reach::dry(dry);
         }
-        let (level, thin) = (dry * dry, left * LEFT * self.radius * root_radius);
+        let (level, thin) = (dry * dry, LEFT * self.radius * root_radius);
         let mut q = (level + self.radius * self.film * unknown).sqrt().sqrt();
         if q == 0.0 {
             q = (thin * unknown).powf(0.2);
         }
         if q == 0.0 {
-            return Reach::default();
+            return Reach::dry(0.0);
         }
         for _ in 0..30 {
             let (mut film, mut slope, mut of_rim) = (thin, 0.0, None);
@@ -338,10 +392,10 @@ impl EntrainedFilm {
             // Convergence is quadratic: 1e-12 is left.
             if step.abs() <= 1e-6 * q {
                 let film = film / (self.radius * q);
-                return Reach { radius: q * q, film, slope, share: 1.0, of_rim };
+                return Reach { radius: q * q, film, slope, supply: Supply::FLOODED, of_rim };
             }
         }
-        Reach { radius: f64::NAN, film: f64::NAN, ..Reach::default() }
+        Reach { film: f64::NAN, ..Reach::dry(f64::NAN) }
     }
 
     fn outer(&self) -> Ring {
@@ -360,16 +414,17 @@ impl EntrainedFilm {
         inner.towards(self.rings.get(next), overlap)
     }
 
-    /// Force in N at a radius, ∫ a dδ and φ, and the rate of u in m/s; `of_rim` as in [`Reach`].
+    /// Force in N at a radius, ∫ a dδ and a supply, and the rate of u in m/s; `of_rim` as in [`Reach`].
     fn pushed(
         &self,
         unknown: f64,
         contact: Closed,
-        (a, push, share): (f64, f64, f64),
+        (a, push, supply): (f64, f64, Supply),
         of_rim: Option<(f64, f64)>,
     ) -> (f64, f64) {
         let hertz = 2.0 / 3.0 * self.radius.sqrt() * contact.overlap * contact.root;
-        let force = |rim: f64| 2.0 * self.modulus * (push + rim - hertz);
+        let (share, wet) = (supply.share, supply.wet.min(self.wet));
+        let force = |rim: f64| 2.0 * self.modulus * (push + wet * rim - hertz);
         if self.drawn {
             let rim = self.drawing * contact.rate.abs().powf(0.6);
             return (force(rim.copysign(contact.rate)), 0.0);
@@ -389,30 +444,52 @@ impl EntrainedFilm {
         (force(STIFF * share * rim), rate)
     }
 
+    /// 3 d ln (film over u)/d ln u at constant a.
+    fn slope(&self, unknown: f64, reach: &Reach, at: (f64, f64)) -> f64 {
+        if unknown <= 0.0 || self.volume == f64::INFINITY {
+            return reach.slope;
+        }
+        let [less, more] =
+            [1.0 - SLOPE, 1.0 + SLOPE].map(|part| self.edge(part * unknown, reach.radius, at).film);
+        1.5 * (more / less).ln() / SLOPE
+    }
+
     /// Rate of a² = R* (δ + fresh film) over the sizes of its parts, −1 to 1.
-    fn growth(&self, unknown: f64, contact: Closed, reach: &Reach) -> f64 {
-        let (_, rate) =
-            self.pushed(unknown, contact, (reach.radius, 0.0, reach.share), reach.of_rim);
-        let fresh = reach.film * (1.0 + reach.slope / 3.0) * rate;
+    fn growth(&self, unknown: f64, contact: Closed, reach: &Reach, swept: f64) -> f64 {
+        let edge = (reach.radius, 0.0, reach.supply);
+        let (_, rate) = self.pushed(unknown, contact, edge, reach.of_rim);
+        let slope = self.slope(unknown, reach, (contact.overlap, swept));
+        let fresh = reach.film * (1.0 + slope / 3.0) * rate;
         (contact.rate + fresh) / (contact.rate.abs() + fresh.abs()).max(f64::MIN_POSITIVE)
     }
 
+    /// ∫ a² dδ in m³ at a stage.
+    fn swept(&self, wetted: f64, overlap: f64) -> f64 {
+        match self.advances {
+            true => self.outer().swept + wetted * (SPAN * self.radius).powi(2),
+            false => self.held(overlap).swept,
+        }
+    }
+
     /// Leaves a ring where the edge has advanced or drawn back; returns the numbers since then.
-    fn accept_edge(&mut self, [unknown, moved, worked]: [f64; 3], contact: Closed) -> [f64; 3] {
-        let (overlap, reach) = (contact.overlap, self.reach(unknown, contact.root));
+    fn accept_edge(&mut self, numbers_m: [f64; 4], contact: Closed) -> [f64; 4] {
+        let ([unknown, moved, worked, wetted], overlap) = (numbers_m, contact.overlap);
+        let swept = self.swept(wetted, overlap);
+        let reach = self.reach(unknown, contact.root, swept);
         let (outer, span) = (self.outer(), SPAN * self.radius);
-        let grows = self.growth(unknown, contact, &reach) > TURNS;
+        let grows = self.growth(unknown, contact, &reach, swept) > TURNS;
         self.film = reach.film;
-        let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0]);
+        let edge = if self.advances { reach.radius } else { self.held(overlap).radius };
+        self.wet = self.wet.min(self.supply(unknown, edge, (overlap, swept)).wet);
+        let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0, 0.0]);
         if was && reach.radius > outer.radius && overlap > outer.overlap {
             let (push, work) = (outer.push + moved * span, outer.work + worked * span * span);
-            let (radius, swept) = (reach.radius, outer.swept_to(reach.radius, overlap));
-            self.rings.push(Ring { radius, overlap, push, work, swept });
+            self.rings.push(Ring { radius: reach.radius, overlap, push, work, swept });
             self.advances = grows;
         } else if was {
             // Rounding of a contact at rest.
             self.advances = grows;
-            numbers = [unknown, moved, worked];
+            numbers = numbers_m;
         } else {
             let held = self.held(overlap);
             self.advances = grows && reach.radius > held.radius;
@@ -432,41 +509,46 @@ impl ContactState for EntrainedFilm {
         self.rings.truncate(1);
         let (work, swept) = (0.4 * push * overlap_m, 0.75 * radius * push);
         self.rings.push(Ring { radius, overlap: overlap_m, push, work, swept });
-        (self.advances, self.drawn, self.rate, self.film) = (true, false, 0.0, 0.0);
+        (self.advances, self.drawn, self.rate, self.film, self.wet) = (true, false, 0.0, 0.0, 1.0);
     }
 
-    fn force_and_rates(&self, numbers_m: [f64; 3], contact: Closed) -> (f64, [f64; 3]) {
-        let [unknown, moved, _] = numbers_m;
+    fn force_and_rates(&self, numbers_m: [f64; 4], contact: Closed) -> (f64, [f64; 4]) {
+        let [unknown, moved, _, wetted] = numbers_m;
         if !self.advances {
             let ring = self.held(contact.overlap);
-            let edge = (ring.radius, ring.push, self.supply(unknown, &ring).0);
+            let supply = self.supply(unknown, ring.radius, (contact.overlap, ring.swept));
+            let edge = (ring.radius, ring.push, supply);
             let (force, rate) = self.pushed(unknown, contact, edge, None);
-            return (force, [rate, 0.0, 0.0]);
+            return (force, [rate, 0.0, 0.0, 0.0]);
         }
-        let (reach, span) = (self.reach(unknown, contact.root), SPAN * self.radius);
+        let span = SPAN * self.radius;
+        let reach = self.reach(unknown, contact.root, self.swept(wetted, contact.overlap));
         let (a, push) = (reach.radius, self.outer().push + moved * span);
-        let (force, rate) = self.pushed(unknown, contact, (a, push, reach.share), reach.of_rim);
-        (force, [rate, a / span * contact.rate, push / (span * span) * contact.rate])
+        let (force, rate) = self.pushed(unknown, contact, (a, push, reach.supply), reach.of_rim);
+        let wider = if self.volume == f64::INFINITY { 0.0 } else { (a / span).powi(2) };
+        let [moved, worked] = [a / span, push / (span * span)].map(|by| by * contact.rate);
+        (force, [rate, moved, worked, wider * contact.rate])
     }
 
-    fn energy_j(&self, [unknown, _, worked]: [f64; 3], overlap_m: f64) -> f64 {
+    fn energy_j(&self, [unknown, _, worked, _]: [f64; 4], overlap_m: f64) -> f64 {
         let bodies = match self.advances {
             true => self.outer().work + worked * (SPAN * self.radius).powi(2),
             false => self.held(overlap_m).work,
         };
-        let rim = 0.5 * STIFF * unknown * unknown * self.radius;
+        let rim = 0.5 * self.wet * STIFF * unknown * unknown * self.radius;
         let hertz = 4.0 / 15.0 * self.radius.sqrt() * overlap_m * overlap_m * overlap_m.sqrt();
         2.0 * self.modulus * (bodies + rim - hertz)
     }
 
-    fn until_change(&self, unknown_m: f64, contact: Closed) -> f64 {
+    fn until_change(&self, [unknown, _, _, wetted]: [f64; 4], contact: Closed) -> f64 {
         if self.drawn {
             return contact.rate / self.rate;
         }
-        let relaxed = unknown_m / (SLIGHT * self.radius);
-        let reach = self.reach(unknown_m, contact.root);
+        let relaxed = unknown / (SLIGHT * self.radius);
+        let swept = self.swept(wetted, contact.overlap);
+        let reach = self.reach(unknown, contact.root, swept);
         if self.advances {
-            return relaxed.min(self.growth(unknown_m, contact, &reach));
+            return relaxed.min(self.growth(unknown, contact, &reach, swept));
         }
         let overtaken = 1.0 - (reach.radius / self.held(contact.overlap).radius).powi(2);
         let back = self.rate < 0.0 && contact.overlap < self.outer().overlap;
@@ -474,19 +556,20 @@ impl ContactState for EntrainedFilm {
         relaxed.min(overtaken).min(pressed)
     }
 
-    fn accept(&mut self, numbers_m: [f64; 3], contact: Closed) -> ([f64; 3], bool) {
-        let [unknown, moved, worked] = numbers_m;
+    fn accept(&mut self, numbers_m: [f64; 4], contact: Closed) -> ([f64; 4], bool) {
+        let [unknown, moved, worked, wetted] = numbers_m;
         let was = (self.advances, self.drawn);
         if contact.overlap == 0.0 {
             self.begin(0.0);
-            return ([0.0; 3], was != (true, false));
+            return ([0.0; 4], was != (true, false));
         }
-        let mut numbers = self.accept_edge([unknown.max(0.0), moved, worked], contact);
+        let mut numbers = self.accept_edge([unknown.max(0.0), moved, worked, wetted], contact);
         let relaxed = unknown <= TURNS * SLIGHT * self.radius;
         self.drawn = relaxed && contact.rate < -TURNS * self.rate.abs();
         self.rate = contact.rate;
         if self.drawn {
-            numbers[0] = 0.0
+            numbers[0] = 0.0;
+            self.wet = 1.0;
         };
         (numbers, was != (self.advances, self.drawn))
     }

@@ -159,18 +159,18 @@ pub trait ContactState: Debug + Send + Sync {
     }
 
     /// Force in N, and rates of change of the numbers in m/s.
-    fn force_and_rates(&self, numbers_m: [f64; 3], contact: Closed) -> (f64, [f64; 3]);
+    fn force_and_rates(&self, numbers_m: [f64; 4], contact: Closed) -> (f64, [f64; 4]);
 
     /// Energy in J that the contact would give back at the start of a step.
-    fn energy_j(&self, numbers_m: [f64; 3], overlap_m: f64) -> f64;
+    fn energy_j(&self, numbers_m: [f64; 4], overlap_m: f64) -> f64;
 
     /// Falls below 0 where the contact begins to behave otherwise than at the start of
     /// the step, which must end there; dimensionless, of the order of 1.
-    fn until_change(&self, number_m: f64, contact: Closed) -> f64;
+    fn until_change(&self, numbers_m: [f64; 4], contact: Closed) -> f64;
 
     /// Makes the end of a step the start of the next; returns the numbers there, and whether
     /// force or rates are others there than at the end of the step.
-    fn accept(&mut self, numbers_m: [f64; 3], contact: Closed) -> ([f64; 3], bool);
+    fn accept(&mut self, numbers_m: [f64; 4], contact: Closed) -> ([f64; 4], bool);
 
     /// A copy.
     fn boxed(&self) -> Box<dyn ContactState>;

@@ -8,9 +8,9 @@ use std::ops::Range;
 struct StatefulContact {
     contact: usize,
     /// The numbers at the start of the step.
-    start_m: [f64; 3],
+    start_m: [f64; 4],
     /// The same at the stage that is computed.
-    stage_m: [f64; 3],
+    stage_m: [f64; 4],
     state: Box<dyn ContactState>,
 }
 
@@ -19,7 +19,7 @@ struct StatefulContact {
 pub(crate) struct ContactStates {
     contacts: Vec<StatefulContact>,
     /// Rates of the numbers, a row a stage.
-    rates_m_s: Vec<Vec<[f64; 3]>>,
+    rates_m_s: Vec<Vec<[f64; 4]>>,
 }
 
 impl ContactStates {
@@ -34,11 +34,11 @@ impl ContactStates {
                 let Some(mut state) = term.law.state(&term.columns, at) else { continue };
                 let least = if state.acts_across() { f64::NEG_INFINITY } else { 0.0 };
                 state.begin(overlap_m(contact).max(least));
-                let (start_m, stage_m) = ([0.0; 3], [0.0; 3]);
+                let (start_m, stage_m) = ([0.0; 4], [0.0; 4]);
                 contacts.push(StatefulContact { contact, start_m, stage_m, state });
             }
         }
-        Self { rates_m_s: vec![vec![[0.0; 3]; contacts.len()]; stages], contacts }
+        Self { rates_m_s: vec![vec![[0.0; 4]; contacts.len()]; stages], contacts }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -73,7 +73,7 @@ impl ContactStates {
                 force_n[c] += force;
                 *rate = own_rate;
             } else {
-                *rate = [0.0; 3];
+                *rate = [0.0; 4];
             }
         }
     }
@@ -114,7 +114,7 @@ impl ContactStates {
     pub(super) fn open(&mut self, contact: usize) {
         if let Some(at) = self.find(contact).filter(|at| !self.contacts[*at].state.acts_across()) {
             let own = &mut self.contacts[at];
-            (own.start_m, own.stage_m) = ([0.0; 3], [0.0; 3]);
+            (own.start_m, own.stage_m) = ([0.0; 4], [0.0; 4]);
             own.state.begin(0.0);
         }
     }
@@ -131,7 +131,7 @@ impl ContactStates {
         contact: usize,
         (step_s, weights): (f64, impl Iterator<Item = f64>),
         at_m_and_m_s: (f64, f64),
-        of: impl Fn(&dyn ContactState, [f64; 3], Closed) -> f64,
+        of: impl Fn(&dyn ContactState, [f64; 4], Closed) -> f64,
     ) -> Option<f64> {
         let at = self.find(contact)?;
         let own = &self.contacts[at];
@@ -155,10 +155,10 @@ impl ContactStates {
 fn moved(
     step_s: f64,
     weights: impl Iterator<Item = f64>,
-    rates_m_s: &[Vec<[f64; 3]>],
+    rates_m_s: &[Vec<[f64; 4]>],
     at: usize,
-) -> [f64; 3] {
-    let mut sum = [0.0; 3];
+) -> [f64; 4] {
+    let mut sum = [0.0; 4];
     for (weight, row) in weights.zip(rates_m_s) {
         sum = std::array::from_fn(|j| sum[j] + weight * row[at][j]);
     }

@@ -267,7 +267,7 @@ impl Piece<'_> {
         contact: usize,
         theta: f64,
         at: (f64, f64),
-        of: impl Fn(&dyn ContactState, [f64; 3], Closed) -> f64,
+        of: impl Fn(&dyn ContactState, [f64; 4], Closed) -> f64,
     ) -> Option<f64> {
         let weights = self.table.dense_velocity.iter().map(|row| polynomial(row, theta));
         self.state.states.seen(contact, (self.step_s, weights), at, of)
@@ -276,7 +276,7 @@ impl Piece<'_> {
     /// Below 0 where the state of a contact has changed its behaviour since the step's start.
     pub(super) fn until_change(&self, contact: usize, theta: f64) -> Option<f64> {
         let until =
-            |state: &dyn ContactState, own: [f64; 3], closed| state.until_change(own[0], closed);
+            |state: &dyn ContactState, own: [f64; 4], closed| state.until_change(own, closed);
         self.of_state(contact, theta, self.overlap(contact, theta), until)
     }
 
