@@ -195,12 +195,12 @@ struct Supply {
     share: f64,
     /// s: of the fresh film.
     film: f64,
-    /// ψ: of the rim's force.
-    wet: f64,
+    /// Oil around the contact in a⁴/R*.
+    outside: f64,
 }
 
 impl Supply {
-    const FLOODED: Self = Self { share: 1.0, film: 1.0, wet: 1.0 };
+    const FLOODED: Self = Self { share: 1.0, film: 1.0, outside: f64::INFINITY };
 
     /// Of a film β G^n y in units of a²/R*, oil around the contact in a⁴/R*, and D over J.
     fn new(film: f64, outside: f64, scale: f64) -> Self {
@@ -213,21 +213,23 @@ impl Supply {
         // for the width w of the wetted ring.
         let ring = 1.6 * PI * 0.643 * root.powi(5) + 1.6 * (PI * outside).sqrt();
         let taken = (1.63 * (film * ring / outside).ln()).exp();
+        let share = |wide: f64| LEAST + (1.0 - LEAST) * (-lacking * wide / (1.0 - LEAST)).exp();
+        let mut rim = share((1.0 + taken).powf(0.306));
         // The rim's overlap is larger by 1/√φ.
-        let mut rim = 1.0_f64;
-        for _ in 0..3 {
+        for _ in 0..2 {
             let softer = -rim.ln();
-            let wide = 0.306 * (taken * (0.815 * softer).exp()).ln_1p() + softer / 3.0;
-            rim = LEAST + (1.0 - LEAST) * (-lacking * wide.exp() / (1.0 - LEAST)).exp();
+            let wider = 1.0 + taken * (0.815 * softer).exp();
+            rim = share((0.306 * wider.ln() + softer / 3.0).exp());
         }
         // Half the ring at the edge in which the gap is less than the film.
         let inlet = PI * film * (film / 1.2).cbrt().powi(2);
         let film = -(-outside * rim / inlet.max(f64::MIN_POSITIVE)).exp_m1();
-        Self { share: rim, film, wet: Self::wet(outside) }
+        Self { share: rim, film, outside }
     }
 
-    fn wet(outside: f64) -> f64 {
-        -(-outside / INLET).exp_m1()
+    /// ψ: of the rim's force.
+    fn wet(&self) -> f64 {
+        -(-self.outside / INLET).exp_m1()
     }
 }
 
@@ -319,7 +321,7 @@ impl EntrainedFilm {
         let trapped = PI * (a * a * (0.5 * a * a / r - overlap) + swept);
         let outside = ((self.volume - trapped) * r / a.powi(4)).max(SLIGHT);
         if unknown <= 0.0 {
-            return Supply { wet: Supply::wet(outside), ..Supply::FLOODED };
+            return Supply { outside, ..Supply::FLOODED };
         }
         let rim = unknown * (a * r).sqrt();
         let root = rim.cbrt();
@@ -445,7 +447,7 @@ impl EntrainedFilm {
         of_rim: Option<(f64, f64)>,
     ) -> (f64, f64) {
         let hertz = 2.0 / 3.0 * self.radius.sqrt() * contact.overlap * contact.root;
-        let (share, wet) = (supply.share, supply.wet.min(self.wet));
+        let (share, wet) = (supply.share, supply.wet().min(self.wet));
         let force = |rim: f64| 2.0 * self.modulus * (push + wet * rim - hertz);
         if self.drawn {
             let rim = self.drawing * contact.rate.abs().powf(0.6);
@@ -502,7 +504,7 @@ impl EntrainedFilm {
         let grows = self.growth(unknown, contact, &reach, swept) > TURNS;
         (self.film, self.steep) = (reach.film, reach.steep);
         let edge = if self.advances { reach.radius } else { self.held(overlap).radius };
-        self.wet = self.wet.min(self.supply(unknown, edge, (overlap, swept)).wet);
+        self.wet = self.wet.min(self.supply(0.0, edge, (overlap, swept)).wet());
         let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0, 0.0]);
         if was && reach.radius > outer.radius && overlap > outer.overlap {
             let (push, work) = (outer.push + moved * span, outer.work + worked * span * span);
