@@ -133,12 +133,14 @@ impl Term<5> for FilmEntrained {
                 relaxing: (STIFF / (RIM[0] * reach)).powf(5.0 / 3.0) / speed,
                 drawing: RIM[1] * reach * speed.powf(0.6),
                 inlet,
+                meniscus: 6.0 / PI * (STIFF * radius).cbrt().powi(2) * RIM[0].powf(-5.0 / 3.0),
                 volume: per_volume.recip(),
                 rings: vec![Ring::default()],
                 advances: true,
                 drawn: false,
                 rate: 0.0,
                 film: 0.0,
+                steep: 2.0,
                 wet: 1.0,
             })
         })
@@ -193,37 +195,41 @@ struct Supply {
     share: f64,
     /// s: of the fresh film.
     film: f64,
-    /// ψ: of the rim's force.
-    wet: f64,
+    /// Oil around the contact in a⁴/R*.
+    outside: f64,
 }
 
 impl Supply {
-    const FLOODED: Self = Self { share: 1.0, film: 1.0, wet: 1.0 };
+    const FLOODED: Self = Self { share: 1.0, film: 1.0, outside: f64::INFINITY };
 
     /// Of a film β G^n y in units of a²/R*, oil around the contact in a⁴/R*, and D over J.
     fn new(film: f64, outside: f64, scale: f64) -> Self {
         // J = ∫ W²/(ξ h³) dξ from the meniscus on is 20.5 v^−0.2 near the edge and 35.0 v^−0.5 far away;
         // between, within 4 %.
-        let root = outside.powf(0.08);
+        let logarithm = outside.ln();
+        let root = (0.08 * logarithm).exp();
         let lacking = scale * (root * root * J[0] + root.powi(5) * J[1]).powf(-1.25);
         // Over the gap of Hertz the film takes oil too, on the area up to the meniscus, and w^2.5 + z w = 1
         // for the width w of the wetted ring.
-        let ring = 1.6 * PI * 0.643 * outside.powf(0.4) + 1.6 * (PI * outside).sqrt();
-        let taken = film * ring / outside;
+        let ring = 1.6 * PI * 0.643 * root.powi(5) + 1.6 * (PI * outside).sqrt();
+        let taken = (1.63 * (film * ring / outside).ln()).exp();
+        let share = |wide: f64| LEAST + (1.0 - LEAST) * (-lacking * wide / (1.0 - LEAST)).exp();
+        let mut rim = share((1.0 + taken).powf(0.306));
         // The rim's overlap is larger by 1/√φ.
-        let mut rim = 1.0_f64;
-        for _ in 0..3 {
-            let wide = (1.0 + (taken / rim.sqrt()).powf(1.63)).powf(0.306);
-            rim = LEAST + (1.0 - LEAST) * (-lacking * wide / rim.cbrt() / (1.0 - LEAST)).exp();
+        for _ in 0..2 {
+            let softer = -rim.ln();
+            let wider = 1.0 + taken * (0.815 * softer).exp();
+            rim = share((0.306 * wider.ln() + softer / 3.0).exp());
         }
         // Half the ring at the edge in which the gap is less than the film.
         let inlet = PI * film * (film / 1.2).cbrt().powi(2);
         let film = -(-outside * rim / inlet.max(f64::MIN_POSITIVE)).exp_m1();
-        Self { share: rim, film, wet: Self::wet(outside) }
+        Self { share: rim, film, outside }
     }
 
-    fn wet(outside: f64) -> f64 {
-        -(-outside / INLET).exp_m1()
+    /// ψ: of the rim's force.
+    fn wet(&self) -> f64 {
+        -(-self.outside / INLET).exp_m1()
     }
 }
 
@@ -236,6 +242,8 @@ struct Reach {
     /// 3 d ln (film over u)/d ln u at constant a of a flooded contact: n x G′/G.
     slope: f64,
     supply: Supply,
+    /// Slope of a − R* (δ + fresh film)/a.
+    steep: f64,
     /// Cube root of a y, and G, where an oil thickens.
     of_rim: Option<(f64, f64)>,
 }
@@ -243,7 +251,7 @@ struct Reach {
 impl Reach {
     /// Where no film is left.
     fn dry(radius: f64) -> Self {
-        Self { radius, film: 0.0, slope: 0.0, supply: Supply::FLOODED, of_rim: None }
+        Self { radius, film: 0.0, slope: 0.0, supply: Supply::FLOODED, steep: 2.0, of_rim: None }
     }
 }
 
@@ -260,6 +268,8 @@ struct EntrainedFilm {
     drawing: f64,
     /// x over (a y)^{1/3}.
     inlet: f64,
+    /// D/J over (a y)^{2/3}/a².
+    meniscus: f64,
     /// V.
     volume: f64,
     /// What the edge left, inner rings first; δ_e rises outward.
@@ -272,6 +282,8 @@ struct EntrainedFilm {
     rate: f64,
     /// Fresh film over u there.
     film: f64,
+    /// Slope of the edge's equation there.
+    steep: f64,
     /// Least ψ since the rim was last relaxed: a ψ that rises would create energy.
     wet: f64,
 }
@@ -309,13 +321,14 @@ impl EntrainedFilm {
         let trapped = PI * (a * a * (0.5 * a * a / r - overlap) + swept);
         let outside = ((self.volume - trapped) * r / a.powi(4)).max(SLIGHT);
         if unknown <= 0.0 {
-            return Supply { wet: Supply::wet(outside), ..Supply::FLOODED };
+            return Supply { outside, ..Supply::FLOODED };
         }
         let rim = unknown * (a * r).sqrt();
-        let thick = if self.inlet > 0.0 { self.thickening(rim.cbrt()).0 } else { 1.0 };
-        let film = LEFT * thick.powf(PRESSURE[2]) * rim * r / a.powi(3);
-        let scale = 6.0 / PI * (STIFF * rim * r).cbrt().powi(2) / (a * a);
-        Supply::new(film, outside, scale * RIM[0].powf(-5.0 / 3.0) * thick.powf(-PRESSURE[1]))
+        let root = rim.cbrt();
+        let thicker = if self.inlet > 0.0 { self.thickening(root).0.ln() } else { 0.0 };
+        let film = LEFT * (PRESSURE[2] * thicker).exp() * rim * r / a.powi(3);
+        let share = self.meniscus * root * root / (a * a) * (-PRESSURE[1] * thicker).exp();
+        Supply::new(film, outside, share)
     }
 
     /// An edge at radius a, wherever a² = R* (δ + fresh film) has it.
@@ -326,7 +339,7 @@ impl EntrainedFilm {
         let film = supply.film * LEFT * (self.radius / (supply.share * a)).sqrt();
         let of_rim = (self.inlet > 0.0).then_some((cube_root, thick));
         let (film, slope) = (film * thick.powf(PRESSURE[2]), PRESSURE[2] * steepness);
-        Reach { radius: a, film, slope, supply, of_rim }
+        Reach { radius: a, film, slope, supply, steep: self.steep, of_rim }
     }
 
     /// Solves a² = R* (δ + fresh film) at (δ, ∫ a² dδ), from the film of the last step.
@@ -348,17 +361,21 @@ impl EntrainedFilm {
         let beyond = |reach: &Reach| {
             reach.radius - self.radius * (at.0 + reach.film * unknown.max(0.0)) / reach.radius
         };
-        let (mut off, mut steep) = (beyond(&reach), 2.4);
+        let (mut off, mut steep) = (beyond(&reach), self.steep);
         for _ in 0..40 {
             let step = off / steep;
             if step.abs() <= 1e-12 * reach.radius {
                 break;
             }
             reach = self.edge(unknown, reach.radius - step, at);
+            // A secant of a step of 1e-9 ends within 1e-12.
+            if step.abs() <= 1e-9 * reach.radius {
+                break;
+            }
             let now = beyond(&reach);
             (off, steep) = (now, ((off - now) / step).clamp(1.0, 20.0));
         }
-        reach
+        Reach { steep, ..reach }
     }
 
     /// Solves a² = R* (δ + β G^n u √(R*/a)) by Newton in √a.
@@ -392,7 +409,14 @@ impl EntrainedFilm {
             // Convergence is quadratic: 1e-12 is left.
             if step.abs() <= 1e-6 * q {
                 let film = film / (self.radius * q);
-                return Reach { radius: q * q, film, slope, supply: Supply::FLOODED, of_rim };
+                return Reach {
+                    radius: q * q,
+                    film,
+                    slope,
+                    supply: Supply::FLOODED,
+                    steep: 2.0,
+                    of_rim,
+                };
             }
         }
         Reach { film: f64::NAN, ..Reach::dry(f64::NAN) }
@@ -423,7 +447,7 @@ impl EntrainedFilm {
         of_rim: Option<(f64, f64)>,
     ) -> (f64, f64) {
         let hertz = 2.0 / 3.0 * self.radius.sqrt() * contact.overlap * contact.root;
-        let (share, wet) = (supply.share, supply.wet.min(self.wet));
+        let (share, wet) = (supply.share, supply.wet().min(self.wet));
         let force = |rim: f64| 2.0 * self.modulus * (push + wet * rim - hertz);
         if self.drawn {
             let rim = self.drawing * contact.rate.abs().powf(0.6);
@@ -478,9 +502,9 @@ impl EntrainedFilm {
         let reach = self.reach(unknown, contact.root, swept);
         let (outer, span) = (self.outer(), SPAN * self.radius);
         let grows = self.growth(unknown, contact, &reach, swept) > TURNS;
-        self.film = reach.film;
+        (self.film, self.steep) = (reach.film, reach.steep);
         let edge = if self.advances { reach.radius } else { self.held(overlap).radius };
-        self.wet = self.wet.min(self.supply(unknown, edge, (overlap, swept)).wet);
+        self.wet = self.wet.min(self.supply(0.0, edge, (overlap, swept)).wet());
         let (was, mut numbers) = (self.advances, [unknown, 0.0, 0.0, 0.0]);
         if was && reach.radius > outer.radius && overlap > outer.overlap {
             let (push, work) = (outer.push + moved * span, outer.work + worked * span * span);
