@@ -54,9 +54,9 @@ fn times_of_flight_of_the_paper_s_rows_agree_with_other_integrations() {
 }
 
 /// Rows on which program and reference agreed when it was made, with the reference's times:
-/// `target/release/hertzchain-random 70 --sample > bench/random/sample.csv`. The last eleven have maxima
-/// that are narrower than any step, far fainter than the pulse, or hardly any, forces that are cut, or
-/// closings that decide on the error.
+/// `target/release/hertzchain-random 70 --sample > bench/random/sample.csv`. The last fourteen have
+/// maxima that are narrower than any step, far fainter than the pulse, or hardly any, forces that are cut,
+/// closings that decide on the error, or small returns.
 const SAMPLE: &str = include_str!("../sample.csv");
 
 /// Relative error of a shot's times of flight beside the reference's.
