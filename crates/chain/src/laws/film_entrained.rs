@@ -23,7 +23,8 @@ use std::f64::consts::PI;
 /// force, squeezed or drawn, is ψ = 1 − e^{−v/0.01} of this: without oil the contact is Hertz's.
 ///
 /// The law never creates energy: F δ̇ is the change of E* (∫_0^a (δ − δ_e)² ds + ψ κ a y²) − (2/5) K δ^{5/2} plus
-/// a loss in the rim that is not negative, as ψ does not rise before the rim is relaxed. A contact starts dry, at rest, and again after each gap.
+/// a loss in the rim that is not negative, as ψ does not rise before the rim is relaxed. A contact starts
+/// dry, at rest, and again after each gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmEntrained {
     /// Viscosity η in Pa s at ambient pressure.
