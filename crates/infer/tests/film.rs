@@ -147,6 +147,20 @@ fn a_dry_curve_off_its_model_is_not_the_films_fault() {
 }
 
 #[test]
+fn a_volume_of_the_liquid_names_that_of_the_film() {
+    let [_, dry] = rows();
+    let liquid = "pressure_viscosity = \"16 1/GPa\"\n";
+    let limited = ROW.replace(liquid, &format!("{liquid}volume = \"1e-14 m^3\"\n"));
+    let wet = Experiment::from_text("limited.toml", &limited).unwrap();
+    let (free, film) = (["eta".to_owned()], ["volume".to_owned()]);
+    let chains = Chains { free: &free, film: &film, ..chains(&dry, &wet) };
+    let eta = crate::common::model(&dry, &["eta"]);
+    let data = || measured(&eta, &[3.2e4], &OFF[..1]);
+    let number = Gauge::new(&chains, data(), data()).unwrap().film_number().unwrap();
+    assert_eq!((number.name.as_str(), number.start), ("film_entrained.volume", 1e-14));
+}
+
+#[test]
 fn one_wet_row_leaves_nothing_to_test_a_film_by() {
     let (problem, found, chi_square) = gauge(&[0.08], &OFF).film().unwrap();
     assert!(chi_square.is_none(), "{chi_square:?}");

@@ -19,11 +19,12 @@ use std::f64::consts::PI;
 ///
 /// A volume V of oil ends at a meniscus. The oil beyond, which is missing, would bear 12 η δ̇ ∫ W²/(2πr h³) dr
 /// with Hertz's gap h and W = ∫ (1 − (2/π) arcsin(a/r)) 2πr dr: by its share D of the rim's force, κ becomes
-/// φ κ, φ about e^{−D}. Where the oil outside hardly fills the inlet, β becomes s β; where it is less than v = 0.01 a⁴/R*,
-/// the rim's force, squeezed or drawn, becomes ψ = 1 − e^{−V/v} of it, so that without oil the contact is Hertz's.
+/// φ κ, φ about e^{−D}. Where the oil outside, v a⁴/R*, hardly fills the inlet, β becomes s β. The rim's
+/// force, squeezed or drawn, is ψ = 1 − e^{−v/0.01} of this: without oil the contact is Hertz's.
 ///
-/// The law never creates energy: F δ̇ is the change of E* (∫_0^a (δ − δ_e)² ds + κ a y²) − (2/5) K δ^{5/2} plus
-/// a loss in the rim that is not negative. A contact starts dry, at rest, and again after each gap.
+/// The law never creates energy: F δ̇ is the change of E* (∫_0^a (δ − δ_e)² ds + ψ κ a y²) − (2/5) K δ^{5/2} plus
+/// a loss in the rim that is not negative, as ψ does not rise before the rim is relaxed. A contact starts
+/// dry, at rest, and again after each gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmEntrained {
     /// Viscosity η in Pa s at ambient pressure.

@@ -97,8 +97,8 @@ impl Gauge {
                 chains.wet.name()
             ));
         };
-        check_film(chains.wet, chains.film)?;
-        let film: Vec<&str> = chains.film.iter().map(String::as_str).collect();
+        let film = film_names(chains.wet, chains.film)?;
+        let film: Vec<&str> = film.iter().map(String::as_str).collect();
         let dry_model = model(chains.dry, &[])?;
         let parameters = dry_model.numbers.parameters(&dry.speeds_m_s());
         let dry = CurveProblem::new(dry_model, dry, parameters)?;
@@ -204,10 +204,10 @@ impl Gauge {
     }
 }
 
-/// Rejects names that are not those of numbers of a film on the wet contacts.
-fn check_film(wet: &Experiment, names: &[String]) -> Result<(), InferError> {
+/// Names of a film's numbers on the wet contacts; rejects others.
+fn film_names(wet: &Experiment, names: &[String]) -> Result<Vec<String>, InferError> {
     if names.is_empty() {
-        return Ok(());
+        return Ok(Vec::new());
     }
     if names.len() > CONTACT.len() {
         return InferError::input("two numbers of a film at most can be free");
@@ -219,19 +219,26 @@ fn check_film(wet: &Experiment, names: &[String]) -> Result<(), InferError> {
             wet.name()
         ));
     }
-    for name in names {
-        let number = FreeNumber::find(wet, name, None)?;
-        let path = number.path().unwrap_or_default();
-        if !FILM.iter().any(|end| path.ends_with(end)) {
-            return InferError::input(format!(
+    names.iter().map(|name| film_name(wet, name)).collect()
+}
+
+/// The name, or, where `[liquid]` has a number of that name, the end of the film's path.
+fn film_name(wet: &Experiment, name: &str) -> Result<String, InferError> {
+    let number = FreeNumber::find(wet, name, None)?;
+    let of_film = |path: &str| FILM.iter().any(|end| path.ends_with(end));
+    if !of_film(number.path().unwrap_or_default()) {
+        let longer = format!("film_entrained.{name}");
+        return match of_film(&longer) {
+            true => Ok(longer),
+            false => InferError::input(format!(
                 "{name} is no number of a film: expected viscosity, pressure_viscosity or volume"
-            ));
-        }
-        if number.form != Form::Constant {
-            return InferError::input("a film's numbers do not depend on speed: name them alone");
-        }
+            )),
+        };
     }
-    Ok(())
+    match number.form {
+        Form::Constant => Ok(name.to_owned()),
+        _ => InferError::input("a film's numbers do not depend on speed: name them alone"),
+    }
 }
 
 /// Reduced radius in m of the wet contact whose K is fitted; `None` without any.
