@@ -266,19 +266,20 @@ impl Signal {
     /// Keeps maxima of one step, and its lowest sample or minimum since the last of them.
     fn keep_inside(&mut self, stretch: &Stretch, maxima: Vec<Maximum>, minima: &[Maximum]) {
         let quarter_s = 0.25 * stretch.length_s;
-        let sample =
-            |(i, value)| Maximum { time_s: stretch.start_s + f64::from(i) * quarter_s, value };
-        let mut low: Vec<Maximum> = (0..).zip(stretch.values).map(sample).collect();
-        low.extend(minima);
-        low.sort_by(|one, two| one.time_s.total_cmp(&two.time_s));
-        let mut low = low.into_iter().peekable();
+        let sample = |(i, value)| (stretch.start_s + f64::from(i) * quarter_s, value);
+        let lowest = |from_s: f64, until_s: f64| {
+            let samples = (0..).zip(stretch.values).map(sample);
+            let low = samples.chain(minima.iter().map(|it| (it.time_s, it.value)));
+            let within = low.filter(|(time_s, _)| (from_s..until_s).contains(time_s));
+            within.fold(f64::INFINITY, |lowest, (_, value)| lowest.min(value))
+        };
+        let mut from_s = f64::NEG_INFINITY;
         for maximum in maxima {
-            while let Some(it) = low.next_if(|it| it.time_s < maximum.time_s) {
-                self.lowest = self.lowest.min(it.value);
-            }
+            self.lowest = self.lowest.min(lowest(from_s, maximum.time_s));
+            from_s = maximum.time_s;
             self.keep(maximum);
         }
-        self.lowest = low.fold(self.lowest, |lowest, it| lowest.min(it.value));
+        self.lowest = self.lowest.min(lowest(from_s, f64::INFINITY));
     }
 
     /// The signal falls to 0: a rise until then ends in a maximum.
@@ -299,7 +300,8 @@ impl Signal {
             .map(|(theta, slope)| self.slope(piece, theta, slope));
         let [start, .., end] = stretch.values;
         let floor = JUMP.max(OF_CUT * piece.cut_tolerance()) * self.largest;
-        let sharp_rises = piece.sharp_rises(self.sensor);
+        let reversals = piece.reversals(self.sensor);
+        let sharp_rises = piece.sharp_rises(self.sensor, reversals);
         let mut first_value = start;
         if sharp_rises.contains(&Some(0.0))
             && let Some(change) = first_change(piece, self.sensor, floor)
@@ -336,7 +338,8 @@ impl Signal {
             self.keep(maximum);
             self.lowest = self.lowest.min(dip);
         }
-        for at in piece.sharp_falls(self.sensor).into_iter().flatten() {
+        // Where a contact begins to be released some laws' forces fall with an infinite slope in rate.
+        for (at, _) in reversals.into_iter().flatten().filter(|(_, released)| *released) {
             if let Some((dip, maximum)) = sharp_maximum(piece, self.sensor, (at, 0.0), floor)
                 && !inside.iter().any(|other| {
                     other.time_s <= piece.time_s(at) && other.value >= maximum.value - floor
@@ -346,7 +349,7 @@ impl Signal {
                 self.lowest = self.lowest.min(dip);
             }
         }
-        let minima = add_at_reversals(piece, self.sensor, &mut inside);
+        let minima = add_at_reversals(piece, self.sensor, reversals, &mut inside);
         self.keep_inside(stretch, inside, &minima);
         self.before = Some((stretch.end_s(), end, end_slope));
         let dip = JUMP * self.largest;
@@ -425,16 +428,19 @@ fn refined(piece: &Piece<'_>, sensor: Sensor, (low, high): (f64, f64)) -> Option
 
 /// Adds maxima near reversals of contacts' rates that lie between samples, and gives the minima there:
 /// a force like a power of the rate between 1 and 2 has an infinite curvature at a reversal.
-fn add_at_reversals(piece: &Piece<'_>, sensor: Sensor, maxima: &mut Vec<Maximum>) -> Vec<Maximum> {
+fn add_at_reversals(
+    piece: &Piece<'_>,
+    sensor: Sensor,
+    reversals: [Option<(f64, bool)>; 3],
+    maxima: &mut Vec<Maximum>,
+) -> Vec<Maximum> {
     let mut minima = Vec::new();
-    for (at, released) in piece.reversals(sensor).into_iter().flatten() {
+    for (at, released) in reversals.into_iter().flatten() {
         let (more, less) = extrema_around(piece, sensor, at, if released { 1.0 } else { -1.0 });
-        let is_new = |one: &Maximum, known: &[Maximum]| {
-            known.iter().all(|it| (it.time_s - one.time_s).abs() > 1e-9 * piece.step_s())
-        };
-        for maximum in more {
-            if is_new(&maximum, maxima) {
-                maxima.push(maximum);
+        for one in more {
+            let same = |it: &Maximum| (it.time_s - one.time_s).abs() <= 1e-9 * piece.step_s();
+            if !maxima.iter().any(same) {
+                maxima.push(one);
             }
         }
         minima.extend(less);
@@ -453,7 +459,8 @@ fn extrema_around(
 ) -> (Vec<Maximum>, Vec<Maximum>) {
     let rate = |theta: f64| piece.signal_rate(sensor, theta);
     let (mut maxima, mut minima) = (Vec::new(), Vec::new());
-    if sign * rate(at) <= 0.0 || !rate(at).is_finite() {
+    let here = sign * rate(at);
+    if here <= 0.0 || !here.is_finite() {
         return (maxima, minima);
     }
     let before = (0.25 * (4.0 * at).floor()).min(0.75);

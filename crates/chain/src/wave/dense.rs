@@ -133,16 +133,17 @@ impl Piece<'_> {
 
     /// Where in the step each contact that a sensor shows begins to be pressed, at its touch or
     /// again: some laws' forces rise there with an infinite slope, in overlap or in rate.
-    pub(crate) fn sharp_rises(&self, sensor: Sensor) -> [Option<f64>; 3] {
-        self.closed_contacts(sensor).map(|contact| {
-            let contact = contact?;
-            let rate = |theta: f64| self.overlap(contact, theta).1;
-            let (overlap, first) = self.overlap(contact, 0.0);
-            let touches = first > 0.0 && overlap < NEAR_TOUCH * first * self.step_s;
-            let turns = first <= 0.0 && rate(1.0) > 0.0;
-            match touches {
+    pub(crate) fn sharp_rises(
+        &self,
+        sensor: Sensor,
+        reversals: [Option<(f64, bool)>; 3],
+    ) -> [Option<f64>; 3] {
+        let contacts = self.closed_contacts(sensor);
+        std::array::from_fn(|i| {
+            let (overlap, rate) = self.overlap(contacts[i]?, 0.0);
+            match rate > 0.0 && overlap < NEAR_TOUCH * rate * self.step_s {
                 true => Some(0.0),
-                false => turns.then(|| bracketed_root(rate, 0.0, 1.0, 1e-13)),
+                false => reversals[i].filter(|(_, released)| !released).map(|(at, _)| at),
             }
         })
     }
@@ -154,13 +155,6 @@ impl Piece<'_> {
             let (overlap, rate) = self.overlap(contact, 1.0);
             rate < 0.0 && overlap < -NEAR_TOUCH * rate * self.step_s
         })
-    }
-
-    /// Where in the step each contact that a sensor shows begins to be released: some laws' forces
-    /// fall there with an infinite slope in rate.
-    pub(crate) fn sharp_falls(&self, sensor: Sensor) -> [Option<f64>; 3] {
-        self.reversals(sensor)
-            .map(|reversal| reversal.filter(|(_, released)| *released).map(|it| it.0))
     }
 
     /// Where in the step the rate of each contact that a sensor shows changes sign, and whether it is
