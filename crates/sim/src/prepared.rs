@@ -55,6 +55,9 @@ pub(crate) fn is_ambiguous(shot: &Shot) -> bool {
 /// A run's tolerance and the run, if it has not failed.
 type Looser = (f64, Option<Shot>);
 
+/// Tolerance of a run that looks for a missing time of flight, over that of the shot.
+const OF_MISSING: f64 = 1e-3;
+
 /// Most runs from which an error is estimated.
 const MOST_LOOSER: usize = 3;
 
@@ -161,6 +164,10 @@ impl<'a> PreparedShot<'a> {
     /// takes its place, and those before it estimate the error of that one: in other than gentle
     /// rows several, because one agrees by chance where errors hardly fall with the tolerance.
     fn estimate(&self, shot: &mut Shot, mut tolerance: f64) -> Result<(), StudyError> {
+        if let Some(found) = self.missing_time(shot, tolerance)? {
+            tolerance = found.tolerance.unwrap_or(tolerance);
+            *shot = found;
+        }
         let mut looser = self.looser(tolerance);
         let mut reached = self.estimated(shot, tolerance, &looser);
         for _ in 0..MOST_TRIES {
@@ -181,6 +188,17 @@ impl<'a> PreparedShot<'a> {
         // Looser runs confirm the accuracy asked and no better one.
         self.note_reached(shot, (margin * reached).max(self.plan.accuracy));
         Ok(())
+    }
+
+    /// A tighter shot, where it has a time of flight that a shot lacks: errors of contacts whose damping
+    /// is stiff may end the search for the wall's peak, and in looser runs they do so all the more.
+    fn missing_time(&self, shot: &Shot, tolerance: f64) -> Result<Option<Shot>, StudyError> {
+        let tighter = OF_MISSING * tolerance;
+        if shot.passage.is_ok() || accuracy::is_gentle(self.plan) || tighter < TIGHTEST {
+            return Ok(None);
+        }
+        let found = self.tightened(tighter, self.plan.watch.is_some())?;
+        Ok(Some(found).filter(|found| found.passage.is_ok()))
     }
 
     /// Runs that are looser than one of a tolerance, with their own; `None` of one that fails.
@@ -207,11 +225,7 @@ impl<'a> PreparedShot<'a> {
     /// The error of a shot, by looser runs.
     fn estimated(&self, shot: &Shot, tolerance: f64, looser: &[Looser]) -> f64 {
         let of_plan = accuracy::margin(self.plan);
-        let change = |run: &Shot| match accuracy::is_gentle(self.plan) {
-            true => shot.change(run),
-            // Differences of times that are wrong may be right by chance.
-            false => shot.change(run).max(shot.times_change(run)),
-        };
+        let change = |run: &Shot| self.change(shot, run);
         let changes = looser
             .iter()
             .map(|(loose, run)| (loose / tolerance, run.as_ref().map_or(f64::INFINITY, change)));
@@ -219,6 +233,15 @@ impl<'a> PreparedShot<'a> {
         let runs = looser.iter().filter_map(|(_, run)| run.as_ref());
         let heights = runs.map(|run| shot.height_change(run)).fold(f64::INFINITY, f64::min);
         standing(shot, accuracy::estimated(&changes, of_plan, tolerance), heights)
+    }
+
+    /// Largest relative difference of two runs; but for gentle rows of equal beads that of each peak's time
+    /// over the shortest time of flight too, as differences of times that are wrong may be right by chance.
+    fn change(&self, shot: &Shot, run: &Shot) -> f64 {
+        match accuracy::is_gentle_and_equal(self.plan) {
+            true => shot.change(run),
+            false => shot.change(run).max(shot.times_change(run)),
+        }
     }
 
     /// A run at a tolerance other than the plan's own.
@@ -263,11 +286,12 @@ impl<'a> PreparedShot<'a> {
             true => Ok(None),
             false => self.tightened(tolerance, false).map(Some),
         };
-        let of_plan = accuracy::margin(self.plan);
+        let of_plan = accuracy::margin_of_finer(self.plan);
         let mut near = near.map_or_else(|| finer(0.1 * tolerance), |near| Ok(Some(near)))?;
         let mut far = finer(0.01 * tolerance)?;
         loop {
-            let change = |other: &Option<Shot>| other.as_ref().map_or(0.0, |it| shot.change(it));
+            let change =
+                |other: &Option<Shot>| other.as_ref().map_or(0.0, |it| self.change(shot, it));
             let reached = accuracy::reached([change(&near), change(&far)], of_plan, tolerance);
             let heights = near.as_ref().map_or(0.0, |near| 2.0 * shot.height_change(near));
             let reached = standing(shot, reached, heights);
