@@ -54,7 +54,7 @@ fn times_of_flight_of_the_paper_s_rows_agree_with_other_integrations() {
 }
 
 /// Rows on which program and reference agreed when it was made, with the reference's times:
-/// `target/release/hertzchain-random 70 --sample > bench/random/sample.csv`. The last sixteen have
+/// `target/release/hertzchain-random 70 --sample > bench/random/sample.csv`. The last seventeen have
 /// maxima that are narrower than any step, far fainter than the pulse, or hardly any, forces that are cut,
 /// closings that decide on the error, small returns, or a return right behind the wall's peak.
 const SAMPLE: &str = include_str!("../sample.csv");

@@ -43,7 +43,7 @@ pub(super) struct GateWatch {
     /// Overlap in m that counts as 0 when a step was made to end there.
     landing: f64,
     speed: f64,
-    /// How many times its estimate the error of the next step may be.
+    /// How many times its estimate the error of the next step may be: a shot begins with a contact that closes.
     pub onset: f64,
     /// Modes change with overlaps alone: no cut, no memory, no states.
     overlap_alone: bool,
@@ -81,7 +81,7 @@ impl GateWatch {
             slight_speed: 0.0,
             landing: 0.0,
             speed: scales.speed_m_s,
-            onset: 1.0,
+            onset: ONSET,
             overlap_alone: system.tension == Tension::Allowed
                 && !system.has_memory
                 && !system.has_states
