@@ -129,17 +129,11 @@ impl<'a> PreparedShot<'a> {
 
     fn adaptive(&self, check: Check<'_>) -> Result<Shot, StudyError> {
         let (tolerance, beyond) = accuracy::tolerance(self.plan);
-        let near = match check {
-            Check::By(other) if 0.1 * tolerance >= TIGHTEST => {
-                let mut near = self.tightened(0.1 * tolerance, false)?;
-                if difference(&near, other) <= self.plan.accuracy {
-                    self.note_reached(&mut near, self.plan.accuracy);
-                    return Ok(near);
-                }
-                Some(near)
-            }
-            _ => None,
-        };
+        if let Check::By(other) = check
+            && let Some(shot) = self.confirmed(tolerance, other)?
+        {
+            return Ok(shot);
+        }
         let (mut shot, tolerance) = self.balanced(tolerance)?;
         if beyond {
             shot.notes.push(format!(
@@ -154,9 +148,29 @@ impl<'a> PreparedShot<'a> {
             }
             // Without a budget the tolerance is looser, and looser runs say less.
             Check::Estimated if self.plan.budget => self.estimate(&mut shot, tolerance)?,
-            _ => self.refine(&mut shot, tolerance, near)?,
+            _ => self.refine(&mut shot, tolerance)?,
         }
         Ok(shot)
+    }
+
+    /// A shot at a tenth of the tolerance, or at a hundredth where maxima are too alike for that, that
+    /// another computation confirms: by another method, or else the adaptive loop at ten times its tolerance.
+    fn confirmed(&self, tolerance: f64, other: &Shot) -> Result<Option<Shot>, StudyError> {
+        if 0.01 * tolerance < TIGHTEST {
+            return Ok(None);
+        }
+        let mut shot = self.tightened(0.1 * tolerance, false)?;
+        let mut confirmed = difference(&shot, other) <= self.plan.accuracy;
+        if !confirmed {
+            let looser = match is_ambiguous(&shot) {
+                true => std::mem::replace(&mut shot, self.tightened(0.01 * tolerance, false)?),
+                false => self.tightened(tolerance, false)?,
+            };
+            // Ten times the tolerance at least doubles the error, as in estimates by looser runs.
+            confirmed = difference(&shot, &looser) <= self.plan.accuracy;
+        }
+        self.note_reached(&mut shot, self.plan.accuracy);
+        Ok(confirmed.then_some(shot))
     }
 
     /// Estimates a shot's error from runs for times of flight alone at looser
@@ -276,18 +290,13 @@ impl<'a> PreparedShot<'a> {
     /// Computes a shot again at a tenth and a hundredth of the tolerance; where that
     /// shows that the accuracy was not reached, a finer shot takes its place. Two finer
     /// runs, because one agrees by chance with one shot in a hundred that is wrong.
-    fn refine(
-        &self,
-        shot: &mut Shot,
-        mut tolerance: f64,
-        near: Option<Shot>,
-    ) -> Result<(), StudyError> {
+    fn refine(&self, shot: &mut Shot, mut tolerance: f64) -> Result<(), StudyError> {
         let finer = |tolerance: f64| match tolerance < LEAST_CHECK {
             true => Ok(None),
             false => self.tightened(tolerance, false).map(Some),
         };
         let of_plan = accuracy::margin_of_finer(self.plan);
-        let mut near = near.map_or_else(|| finer(0.1 * tolerance), |near| Ok(Some(near)))?;
+        let mut near = finer(0.1 * tolerance)?;
         let mut far = finer(0.01 * tolerance)?;
         loop {
             let change =
