@@ -14,6 +14,7 @@ use crate::settings::{BodyShape, Far, Near};
 use crate::spec::Spec;
 use crate::validity;
 use crate::values::Units;
+use hertzchain_chain::laws::Parameter;
 use hertzchain_chain::{Bead, BeadPair, Chain, FarEnd, Material, Section, Start};
 use std::collections::HashSet;
 use std::ops::RangeInclusive;
@@ -241,7 +242,8 @@ impl Experiment {
         let section = self.sections().iter().find(|own| own.span == *span)?;
         let law = section.laws.iter().find(|own| own.name() == law)?;
         let mut parameters = law.row.info.parameters.iter();
-        let derived = parameters.any(|p| p.name == parameter && contacts::is_derived(p));
+        let is_derived = |p: &Parameter| p.name == parameter && contacts::is_derived(p);
+        let derived = parameters.any(is_derived) || law.reference(parameter).is_some();
         derived.then(|| Reference::of(section, law, parameter, &chain))
     }
 }

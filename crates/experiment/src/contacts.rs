@@ -127,7 +127,7 @@ pub(crate) fn check_law(node: &Node, units: Units) -> Vec<FileProblem> {
         let near = nearest_word(&entry.key, known.iter().copied());
         problems.push(FileProblem::new(&entry.key_span, message, label).nearest(near));
     }
-    problems.extend(contact_of(node).err());
+    problems.extend(contact_of(node).err().or_else(|| idle_contact(node, row)));
     let read = |p: &Parameter| Some(value_of(p, row, node, units, node.get(p.name)?));
     let unsound = |p: &&Parameter| read(p).map_or(p.source == Source::Required, |r| r.is_err());
     let unsound: Vec<&Parameter> = row.info.parameters.iter().filter(unsound).collect();
@@ -155,7 +155,7 @@ fn law(node: &Node, units: Units, liquid: Option<&Liquid>) -> Result<LawSpec, Fi
     for parameter in row.info.parameters {
         if let Some(value) = node.get(parameter.name) {
             given.push((parameter.name, value_of(parameter, row, node, units, value)?));
-            let own = contact.filter(|_| is_derived(parameter));
+            let own = contact.filter(|_| parameter.source.is_derived());
             references.extend(own.map(|contact| (parameter.name, contact)));
         }
     }
@@ -194,10 +194,22 @@ fn contact_of(node: &Node) -> Result<Option<usize>, FileProblem> {
     Ok(found.and_then(|contact| usize::try_from(contact).ok()))
 }
 
+/// A `contact` without a value that could be that contact's.
+fn idle_contact(node: &Node, row: &Row) -> Option<FileProblem> {
+    let key = node.get(CONTACT)?;
+    let derived = || row.info.parameters.iter().filter(|p| p.source.is_derived());
+    let names: Vec<String> = derived().map(|p| format!("`{}`", p.name)).collect();
+    let idle = !names.is_empty() && derived().all(|p| node.get(p.name).is_none());
+    idle.then(|| {
+        let message = format!("`{CONTACT}` says whose value a law's {} is", names.join(" or "));
+        FileProblem::new(&key.span, message, "expected that value beside it, or no contact")
+    })
+}
+
 /// Keys that a law's table may have beside `law`.
 fn keys_of(row: &Row) -> Vec<&'static str> {
     let parameters = row.info.parameters;
-    let own = parameters.iter().any(is_derived).then_some(CONTACT);
+    let own = parameters.iter().any(|p| p.source.is_derived()).then_some(CONTACT);
     parameters.iter().map(|p| p.name).chain(own).collect()
 }
 

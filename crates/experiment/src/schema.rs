@@ -1,7 +1,7 @@
 //! JSON Schema of the experiment file, from the declared keys and the
 //! registry of contact laws, for editors.
 
-use crate::contacts::{CONTACT, is_derived, limits_of};
+use crate::contacts::{CONTACT, limits_of};
 use crate::keys::{Fields, Key, KeyKind, Need, ROOT, ValueLimits, Variants};
 use crate::units;
 use crate::values::Units;
@@ -170,7 +170,7 @@ fn law_table(row: &Row, units: Units) -> Value {
         schema["description"] = json!(about);
         properties.insert(parameter.name.to_owned(), schema);
     }
-    if row.info.parameters.iter().any(is_derived) {
+    if row.info.parameters.iter().any(|p| p.source.is_derived()) {
         let about = "contact that K or A belongs to; the section's others keep their ratios to it, as materials and \
                      radii give them. All have the same without it";
         let schema = json!({ "type": "integer", "minimum": 0, "description": about });

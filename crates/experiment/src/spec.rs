@@ -218,6 +218,12 @@ impl Spec {
             let message = "a periodic chain has no near end";
             return Err(FileProblem::new(&self.far_span, message, label));
         }
+        if let (Near::Driven { .. }, Push::Spring { .. }) = (&self.near, self.push) {
+            let message = "a driven body carries the load itself, and leaves no room for a spring";
+            let label =
+                "expected push = \"constant\": the force between driven body and bead 1 at rest";
+            return Err(FileProblem::new(&self.load_span, message, label));
+        }
         Ok(())
     }
 

@@ -48,6 +48,15 @@ fn a_driven_end_follows_a_sine_a_pulse_or_a_table() {
 }
 
 #[test]
+fn a_driven_body_presses_and_takes_no_spring() {
+    let driven = "[driven]\nmotion = \"sine\"\namplitude = \"2 um\"\nfrequency = \"5 kHz\"\n[near_end]\nforce = \"1 N\"\n";
+    let constant = format!("{driven}push = \"constant\"");
+    assert_eq!(read(&constant).chain(None).unwrap().0.push, Push::Constant { force_n: 1.0 });
+    let spring = mistake(&format!("{driven}push = \"spring\"\nstiffness = \"1 kN/m\""));
+    assert!(spring.contains("carries the load itself"), "{spring}");
+}
+
+#[test]
 fn a_table_may_stand_in_a_csv_file_beside_the_experiment() {
     let folder = std::env::temp_dir().join(format!("hertzchain-motion-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();

@@ -215,6 +215,9 @@ fn a_number_with_its_contact_scales_the_others_and_one_without_holds_for_all() {
         close(stiffer[1] / own[1], 2.0, 1e-14);
         assert_eq!(stiffer[0] == 2.0 * k, (1..=3).contains(&at), "{at}");
     }
+    // Written out beside the damping, the same K gives the same chain.
+    let scaled = format!(", stiffness = \"{} N/m^1.5\", contact = 2", 2.0 * k);
+    assert_eq!(laws(&scaled, &scaled), stiffer);
     let one = laws(&format!(", stiffness = \"{k} N/m^1.5\""), "");
     assert!(one.iter().all(|of| of[0] == k));
     let slower = laws("", ", relaxation_time = \"1 us\", contact = 1");
@@ -256,4 +259,6 @@ fn a_contact_outside_the_chain_or_without_a_number_of_materials_is_refused() {
     assert!(refused(beyond).contains("contact 9 is outside the chain"));
     let cubic = "\"elastic_hertz\", { law = \"damping_cubic\", coefficient = 1, contact = 1 }";
     assert!(refused(cubic).contains("has no parameter `contact`"));
+    let idle = "{ law = \"elastic_hertz\", contact = 1 }";
+    assert!(refused(idle).contains("says whose value"), "{}", refused(idle));
 }

@@ -24,9 +24,9 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug)]
 pub enum Control<'a> {
     /// Shots with equal steps are compared with two more, with longer steps, those of the adaptive
-    /// loop with two at tighter tolerances; where it follows the striker only if `checked`.
+    /// loop with two at tighter tolerances; where it follows the striker with one with equal steps.
     PerShot {
-        /// Compare shots that follow their striker too.
+        /// Compare shots that follow their striker with two at tighter tolerances.
         checked: bool,
     },
     /// With the steps that calibration shots chose, ten times as fast. Each shot carries its
@@ -125,7 +125,7 @@ fn run_block(
         _ => compared(plans, set),
     };
     let alone = |plan: &Plan| match control {
-        Control::PerShot { checked: false } if plan.rebound => shoot(plan),
+        Control::PerShot { checked: false } if plan.rebound => followed(plan, set),
         Control::None => {
             let shot = shoot(plan)?;
             match is_ambiguous(&shot) {
@@ -138,6 +138,15 @@ fn run_block(
     };
     let shots = plans.iter().zip(fast);
     shots.map(|(plan, shot)| shot.map_or_else(|| alone(plan), Ok)).collect()
+}
+
+/// A shot that follows its striker, confirmed by one with equal steps that ends with the pulse.
+fn followed(plan: &Plan, set: InstructionSet) -> Result<Shot, StudyError> {
+    let flights = plan.clone().for_flights();
+    match compared(&[&flights], set).pop().flatten() {
+        Some(other) => shoot_confirmed(plan, &other),
+        None => shoot_checked(plan),
+    }
 }
 
 /// Shots with the step for their accuracy alone.

@@ -45,8 +45,8 @@ pub struct Shot {
     /// Maxima of the sensor bead above 5 % of its largest, seen with or
     /// without a pulse at the wall.
     pub sensor_maxima: Vec<Maximum>,
-    /// Beads per second between sensor bead and wall contact, by their peaks:
-    /// (N − n + 1/2)/(tw − t7).
+    /// Beads per second between sensor bead and wall contact: N − n + 1/2 over the incident
+    /// time of flight, as the plan picks it.
     pub pulse_speed_beads_s: Option<f64>,
     /// The striker afterwards; `None` without a striker.
     pub rebound: Option<Rebound>,
@@ -108,11 +108,12 @@ impl Shot {
         let passed = passage.as_ref().ok();
         let picked = |pick| Flight::picked(pick, seen, passed?);
         let between = (plan.chain.beads.len() - plan.sensor_bead) as f64 + 0.5;
+        let flight = picked(plan.pick);
         Self {
-            flight: picked(plan.pick),
+            pulse_speed_beads_s: flight.map(|flight| between / flight.incident_s),
+            flight,
             compared: plan.compare.iter().map(|&pick| picked(pick)).collect(),
             sensor_maxima: reported(seen.sensor().maxima()),
-            pulse_speed_beads_s: passed.map(|passage| between / passage.tof_incident_s()),
             passage,
             rebound: None,
             hardest: None,

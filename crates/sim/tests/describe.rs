@@ -1,8 +1,10 @@
 //! What is understood of an experiment, against numbers computed by hand.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on should fail")]
 
+use hertzchain_chain::{Chain, System};
 use hertzchain_experiment::{Experiment, examples, film_presets, preset, presets};
 use hertzchain_sim::{Group, Plan, Value, describe, describe_theory, shoot};
+use std::f64::consts::TAU;
 
 fn described(experiment: &Experiment) -> Vec<Group> {
     let (chain, _) = experiment.chain(None).unwrap();
@@ -251,4 +253,33 @@ fn theory_expects_a_time_of_flight_only_where_one_pulse_runs_down_a_touching_row
         let said = &group.rows[0].value;
         assert!(matches!(said, Value::Text(why) if why.starts_with("not estimated")), "{group:?}");
     }
+}
+
+/// What theory says of one loaded bead between two ends.
+fn of_one_bead(ends: &str) -> (Vec<Group>, Chain) {
+    let text = format!(
+        "materials.steel = {{ young_modulus = \"210 GPa\", poisson_ratio = 0.3, density = \"7850 kg/m^3\" }}\n\
+         striker = {{ speed = \"0.1 m/s\" }}\n\
+         beads = [{{ count = 1, radius = \"5 mm\", material = \"steel\" }}]\n\
+         contacts = [{{ laws = [\"elastic_hertz\"] }}]\nsensors = {{ bead = 1 }}\n{ends}"
+    );
+    let experiment = Experiment::from_text("one.toml", &text).unwrap();
+    let (chain, _) = experiment.chain(None).unwrap();
+    (describe_theory(&experiment, &chain).unwrap(), chain)
+}
+
+#[test]
+fn modes_know_a_stop_of_finite_mass_and_a_spring_that_pushes() {
+    let title = "Normal modes of the chain under its static load";
+    let push = "near_end = { push = \"constant\", force = \"10 N\" }";
+    let stop = format!("{push}\nfar_end = {{ kind = \"stop\", mass = \"30 g\" }}");
+    let (groups, chain) = of_one_bead(&stop);
+    let contact_n_m = System::new(&chain).unwrap().static_contact(1).stiffness_n_m;
+    let bead_kg = chain.beads[0].mass_kg;
+    let two_bodies = (contact_n_m * (1.0 / bead_kg + 1.0 / 0.03)).sqrt() / TAU;
+    assert_close(number(&groups, title, "mode 2 of 2"), two_bodies, 1e-9);
+    let (groups, _) =
+        of_one_bead(&push.replace("\"constant\"", "\"spring\", stiffness = \"10 MN/m\""));
+    let between_springs = ((contact_n_m + 1e7) / bead_kg).sqrt() / TAU;
+    assert_close(number(&groups, title, "mode 1 of 1"), between_springs, 1e-9);
 }

@@ -134,7 +134,12 @@ pub(super) fn ends(chain: &Chain) -> Group {
     }
     match chain.push {
         Push::None => {}
-        Push::Constant { force_n } => group.number("constant push on bead 1", force_n, "N"),
+        Push::Constant { force_n } => {
+            let driven = matches!(chain.start, Start::Driven { .. });
+            let what =
+                if driven { "force of the driven body at rest" } else { "constant push on bead 1" };
+            group.number(what, force_n, "N");
+        }
         Push::Spring { force_n, stiffness_n_m } => {
             group.number("spring push on bead 1", force_n, "N");
             group.number("stiffness of that spring", stiffness_n_m, "N/m");

@@ -3,7 +3,7 @@
 use super::Group;
 use hertzchain_chain::laws::{Nature, Source};
 use hertzchain_chain::{BeadPair, Chain, Material, Section};
-use hertzchain_experiment::{Experiment, LawSpec};
+use hertzchain_experiment::{Experiment, LawSpec, Reference, SectionSpec};
 
 pub(super) fn section(chain: &Chain, contact: usize) -> Option<&Section> {
     chain.sections.iter().find(|section| section.contacts.contains(&contact))
@@ -27,18 +27,31 @@ pub(super) fn elastic(chain: &Chain, contact: usize) -> Option<(f64, f64)> {
 }
 
 pub(super) fn sections(experiment: &Experiment, chain: &Chain) -> Vec<Group> {
-    let specs = experiment.sections();
-    let described = specs.iter().zip(&chain.sections);
-    described
-        .map(|(spec, section)| {
-            let (first, last) = (*section.contacts.start(), *section.contacts.end());
-            let wet = if spec.wet { ", wet" } else { "" };
-            let mut group = Group::new(format!("Contacts {first} to {last}{wet}"));
-            let pairs: Vec<BeadPair> = unlike(chain, section.contacts.clone().collect());
-            spec.laws.iter().for_each(|law| describe_law(&mut group, law, &pairs));
-            group
-        })
-        .collect()
+    let section = |spec: &SectionSpec| {
+        let contacts = spec.from..=spec.to.unwrap_or(chain.beads.len());
+        let contacts: Vec<usize> = contacts.filter(|&c| chain.pair(c).is_some()).collect();
+        let (first, last) = (contacts.first()?, contacts.last()?);
+        let wet = if spec.wet { ", wet" } else { "" };
+        let mut group = Group::new(format!("Contacts {first} to {last}{wet}"));
+        let pairs: Vec<BeadPair> = unlike(chain, contacts);
+        for law in &spec.laws {
+            let reference = |name: &str| reference(experiment, (spec, law.name()), name);
+            describe_law(&mut group, law, &pairs, &reference);
+        }
+        Some(group)
+    };
+    experiment.sections().iter().filter_map(section).collect()
+}
+
+/// Whose value a parameter of a section's law is, where the file names a contact.
+fn reference(
+    experiment: &Experiment,
+    (section, law): (&SectionSpec, &str),
+    name: &str,
+) -> Option<Reference> {
+    let path = |at: usize| format!("contacts[{at}].laws.{law}.{name}");
+    let mut all = (0..experiment.sections().len()).filter_map(|at| experiment.reference(&path(at)));
+    all.find(|reference| *reference.contacts.start() == section.from)
 }
 
 /// The pairs of contacts that differ from the one before.
@@ -48,14 +61,31 @@ fn unlike(chain: &Chain, contacts: Vec<usize>) -> Vec<BeadPair> {
     pairs
 }
 
-fn describe_law(group: &mut Group, law: &LawSpec, pairs: &[BeadPair]) {
+fn describe_law(
+    group: &mut Group,
+    law: &LawSpec,
+    pairs: &[BeadPair],
+    reference: &dyn Fn(&str) -> Option<Reference>,
+) {
     let info = &law.row.info;
     group.text(info.name, info.equation);
     for parameter in info.parameters {
         let given = law.given.iter().find(|(name, _)| *name == parameter.name);
         let name = format!("  {}", parameter.name);
         match (given, parameter.source) {
-            (Some((_, value)), _) => group.number(name, *value, parameter.unit),
+            (Some((_, value)), _) => {
+                match reference(parameter.name).and_then(|of| Some((of.contact?, of.ratios))) {
+                    Some((contact, ratios)) => {
+                        group.number(
+                            format!("{name} of contact {contact}"),
+                            *value,
+                            parameter.unit,
+                        );
+                        group.spread(name, &ratios.map(|ratio| ratio * value), parameter.unit);
+                    }
+                    None => group.number(name, *value, parameter.unit),
+                }
+            }
             (None, Source::Default(f64::INFINITY)) => group.text(name, "without limit"),
             (None, Source::Default(value)) => group.number(name, value, parameter.unit),
             (None, _) => derived(group, law, name, parameter.name, pairs),

@@ -19,7 +19,8 @@ pub(super) fn at_rest(chain: &Chain, system: &System) -> Group {
         }
         let largest = overlaps.iter().copied().fold(0.0, f64::max);
         group.number("largest static overlap", largest, "m");
-        group.count(format!("contacts under load, of {}", last + 1), loaded);
+        let contacts = (0..=last).filter(|&contact| chain.pair(contact).is_some()).count();
+        group.count(format!("contacts under load, of {contacts}"), loaded);
     }
     let open = overlaps.iter().filter(|gap| **gap < 0.0 && gap.is_finite());
     let gaps: Vec<f64> = open.map(|gap| -gap).collect();

@@ -3,7 +3,7 @@
 use super::Group;
 use super::rest::{is_dimer, is_uniform};
 use hertzchain_chain::theory::linear::{Dimer, Ends, UniformChain, normal_modes};
-use hertzchain_chain::{Chain, FarEnd, Start, System};
+use hertzchain_chain::{Chain, FarEnd, Push, Start, System};
 use std::f64::consts::{PI, TAU};
 
 /// Modes of longer chains take seconds and add nothing to the dispersion.
@@ -47,34 +47,56 @@ pub(super) fn dispersion(chain: &Chain, system: &System) -> Option<Group> {
 /// Lowest and highest frequencies of the chain as a whole; `None` when a
 /// contact carries no load, for then it is no spring.
 pub(super) fn modes(chain: &Chain, system: &System) -> Option<Group> {
-    let (ends, contacts) = ends(chain);
-    let masses: Vec<f64> = chain.beads.iter().map(|bead| bead.mass_kg).collect();
-    let stiffnesses: Vec<f64> = contacts.map(|c| system.static_contact(c).stiffness_n_m).collect();
+    let (ends, masses, stiffnesses) = springs(chain, system);
     let mut group = Group::new("Normal modes of the chain under its static load");
-    if masses.len() > MOST_BEADS {
+    if chain.beads.len() > MOST_BEADS {
         let springs = stiffnesses.iter().all(|k| *k > 0.0);
         group.text("modes", format!("not computed for more than {MOST_BEADS} beads"));
         return springs.then_some(group);
     }
     let modes = normal_modes(&masses, &stiffnesses, ends).ok()?;
+    let highest_rad_s = modes.last()?.angular_frequency_rad_s;
     let shown = |i: usize| i < SHOWN || i + SHOWN >= modes.len();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| shown(*i)) {
-        let frequency_hz = mode.angular_frequency_rad_s / TAU;
-        group.number(format!("mode {} of {}", i + 1, modes.len()), frequency_hz, "Hz");
+        let name = format!("mode {} of {}", i + 1, modes.len());
+        match mode.angular_frequency_rad_s {
+            shift if shift < SHIFT * highest_rad_s => group.text(name, "a shift of all bodies"),
+            rad_s => group.number(name, rad_s / TAU, "Hz"),
+        }
     }
     Some(group)
 }
 
-/// What holds the ends, and the contacts that are springs then. A striker
-/// leans on nothing; a finite stop counts as fixed.
-fn ends(chain: &Chain) -> (Ends, std::ops::RangeInclusive<usize>) {
+/// Frequencies below this share of the highest are 0 but for rounding.
+const SHIFT: f64 = 1e-10;
+
+/// What holds the ends, the bodies' masses in kg, and the springs between them in N/m. A striker leans
+/// on nothing, a stop of finite mass is a body, and a spring that pushes is one to a fixed end.
+fn springs(chain: &Chain, system: &System) -> (Ends, Vec<f64>, Vec<f64>) {
     let last = chain.beads.len();
+    let mut masses: Vec<f64> = chain.beads.iter().map(|bead| bead.mass_kg).collect();
     let driven = matches!(chain.start, Start::Driven { .. });
-    match (&chain.far, driven) {
-        (FarEnd::Periodic { .. }, _) => (Ends::Periodic, 1..=last),
-        (FarEnd::Free, false) => (Ends::FreeFree, 1..=last - 1),
-        (FarEnd::Free, true) => (Ends::FixedFree, 0..=last - 1),
-        (_, false) => (Ends::FreeFixed, 1..=last),
-        (_, true) => (Ends::FixedFixed, 0..=last),
-    }
+    let (far_is_fixed, last_contact) = match chain.far {
+        FarEnd::Free => (false, last - 1),
+        FarEnd::Stop { mass_kg, .. } | FarEnd::PlaneStop { mass_kg, .. } => {
+            masses.push(mass_kg);
+            (false, last)
+        }
+        FarEnd::HalfBead { .. } | FarEnd::Plane { .. } => (true, last),
+        FarEnd::Periodic { .. } => (false, last),
+    };
+    let near = match (driven, chain.push) {
+        (true, _) => Some(system.static_contact(0).stiffness_n_m),
+        (false, Push::Spring { stiffness_n_m, .. }) => Some(stiffness_n_m),
+        (false, Push::None | Push::Constant { .. }) => None,
+    };
+    let contacts = (1..=last_contact).map(|contact| system.static_contact(contact).stiffness_n_m);
+    let ends = match (&chain.far, near.is_some(), far_is_fixed) {
+        (FarEnd::Periodic { .. }, ..) => Ends::Periodic,
+        (_, false, false) => Ends::FreeFree,
+        (_, false, true) => Ends::FreeFixed,
+        (_, true, false) => Ends::FixedFree,
+        (_, true, true) => Ends::FixedFixed,
+    };
+    (ends, masses, near.into_iter().chain(contacts).collect())
 }
