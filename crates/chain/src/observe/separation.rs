@@ -1,6 +1,6 @@
 //! When bodies let go of each other.
 
-use crate::wave::{Flow, Observer, Piece};
+use crate::wave::{Flow, Observer, Piece, bracketed_root};
 
 /// Notes when body 0 first separates from bead 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,7 +28,11 @@ impl Observer for Separation {
             }
             self.pressed |= !piece.is_open(0);
             let opened = self.pressed && piece.overlap(0, 1.0).0 < 0.0;
-            self.at_end = opened.then(|| (piece.time_s(1.0), piece.body(0, 1.0).1));
+            let at = |theta: f64| (piece.time_s(theta), piece.body(0, theta).1);
+            self.at_end = opened.then(|| at(1.0));
+            let within = opened && piece.has_given_length() && piece.overlap(0, 0.0).0 > 0.0;
+            let root = || bracketed_root(|theta| -piece.overlap(0, theta).0, 0.0, 1.0, 1e-9);
+            self.first = within.then(|| at(root())).or(self.first);
         }
         Flow::Continue
     }

@@ -102,6 +102,11 @@ impl Piece<'_> {
         }
     }
 
+    /// Whether the step is of a given length, and does not end where contacts change.
+    pub(crate) fn has_given_length(&self) -> bool {
+        self.tolerance == 0.0
+    }
+
     /// Tolerance of a step where forces are cut, 0 elsewhere.
     pub(crate) fn cut_tolerance(&self) -> f64 {
         match self.system.tension {
