@@ -290,14 +290,12 @@ impl Pool {
     }
 
     fn picks(&self, pulses: &[(&PulseSamples, Picked)]) -> Vec<Option<Picked>> {
-        let pick = |(((one, own), place), top): (
-            (&(&PulseSamples, Picked), &Option<Place>),
-            &Option<BellTop>,
-        )| {
-            let place = place.as_ref().filter(|place| one.is_free_of_drift(place))?;
-            Some(self.pick(one, own, (place, top.as_ref()?)))
+        let pick = |(number, (one, own)): (usize, &(&PulseSamples, Picked))| {
+            let place = self.places[number].as_ref();
+            let place = place.filter(|place| one.is_free_of_drift(place))?;
+            Some(self.pick(one, own, (place, self.tops[number].as_ref()?)))
         };
-        pulses.iter().zip(&self.places).zip(&self.tops).map(pick).collect()
+        pulses.iter().enumerate().map(pick).collect()
     }
 
     /// Pick at a place of the bell, whose maximum has errors of its own.
