@@ -29,13 +29,24 @@ fn noise(place: u64, seed: u64) -> f64 {
 
 /// Shots of two channels at 1 MS/s whose first channel has pulses of this rise in samples, given by
 /// the shot's number.
-fn records(shots: u64, (level, seed): (f64, u64), rise: impl Fn(u64) -> f64) -> Vec<Record> {
+fn records(shots: u64, noise: (f64, u64), rise: impl Fn(u64) -> f64) -> Vec<Record> {
+    records_of(shots, noise, &|shot, [incident, reflected]| {
+        pulse(incident, rise(shot)) + 0.6 * pulse(reflected, rise(shot))
+    })
+}
+
+/// The same, of any signal of the sensor's, given by the shot's number and samples after each pulse.
+fn records_of(
+    shots: u64,
+    (level, seed): (f64, u64),
+    sensor: &dyn Fn(u64, [f64; 2]) -> f64,
+) -> Vec<Record> {
     let record = |shot: u64| {
         let at = 500.0 + 0.37 * shot as f64;
         let [wall, back] = [at + 1e6 * TIMES_S[0], at + 1e6 * (TIMES_S[0] + TIMES_S[1])];
         let channel = |name: &str, which: u64| {
             let signal = |i: u64| match which {
-                0 => pulse(i as f64 - at, rise(shot)) + 0.6 * pulse(i as f64 - back, rise(shot)),
+                0 => sensor(shot, [i as f64 - at, i as f64 - back]),
                 _ => 1.5 * pulse(i as f64 - wall, 28.0),
             };
             let volts = (0..2600).map(|i| signal(i) + level * noise(i, 2 * (shot + seed) + which));
@@ -52,6 +63,29 @@ fn records(shots: u64, (level, seed): (f64, u64), rise: impl Fn(u64) -> f64) -> 
         }
     };
     (0..shots).map(record).collect()
+}
+
+/// Errors of reflected times over stated ones, and stated ones over those of each shot alone, where
+/// reflected pulses are two fragments of this height and second share.
+fn of_fragments(seed: u64, of_shot: impl Fn(u64) -> (f64, f64)) -> (Vec<f64>, f64) {
+    let reflected = |shot: u64, at: f64| {
+        let (height, share) = of_shot(shot);
+        height * (pulse(at, 28.0) + share * pulse(at - 32.0, 28.0))
+    };
+    let sensor = |shot, [first, second]: [f64; 2]| pulse(first, 28.0) + reflected(shot, second);
+    let mut measured = measured(records_of(40, (0.0015, seed), &sensor), &Options::default());
+    let sigma_s = |shot: &Shot| shot.flight.as_ref().unwrap().reflected_s.unwrap().sigma;
+    let alone_s: f64 = measured.shots.iter().map(sigma_s).sum();
+    measured.curves(&Grouping::default());
+    let pull = |(number, shot): (usize, &Shot)| {
+        let places = (0..3000).map(|place| 0.01 * f64::from(place));
+        let height = |at: &f64| reflected(number as u64, *at);
+        let at = places.max_by(|a, b| height(a).total_cmp(&height(b))).unwrap();
+        let time = shot.flight.as_ref().unwrap().reflected_s.unwrap();
+        (time.value - TIMES_S[1] - 1e-6 * at) / time.sigma
+    };
+    let pulls = measured.shots.iter().enumerate().map(pull).collect();
+    (pulls, measured.shots.iter().map(sigma_s).sum::<f64>() / alone_s)
 }
 
 fn measured(records: Vec<Record>, options: &Options) -> Measurement {
@@ -95,6 +129,34 @@ fn a_shot_of_another_shape_keeps_its_own_pick() {
         let [one, other] = [one, other].map(|shot| shot.flight.as_ref().unwrap().picks.incident);
         assert_eq!(one.time_s == other.time_s, number == 3, "{number}");
     }
+}
+
+#[test]
+fn a_shape_that_changes_with_the_height_is_followed() {
+    let mut made = Vec::new();
+    for seed in 0..4 {
+        let (pulls, of_alone) = of_fragments(100 * seed, |shot| {
+            let off = 0.03 * ((7 * shot) % 40) as f64 / 20.0 - 0.03;
+            (0.4 * (1.0 + 1.2 * off), 0.5 + 2.0 * off)
+        });
+        assert!(of_alone < 0.5, "{of_alone}");
+        made.extend(pulls);
+    }
+    let coverage = coverage(&made, 1.96).unwrap();
+    assert!(coverage.share > 0.9 && coverage.scale < 1.25, "{coverage:?}");
+}
+
+#[test]
+fn shots_of_shapes_that_differ_by_more_than_noise_keep_their_own() {
+    let mut made = Vec::new();
+    for seed in 0..4 {
+        let share = |shot: u64| 0.5 + 0.04 * noise(shot, seed);
+        let (pulls, of_alone) = of_fragments(100 * seed, |shot| (0.4, share(shot)));
+        assert!(of_alone < 0.6, "{of_alone}");
+        made.extend(pulls);
+    }
+    let coverage = coverage(&made, 1.96).unwrap();
+    assert!(coverage.share > 0.9 && coverage.scale < 1.25, "{coverage:?}");
 }
 
 #[test]

@@ -14,6 +14,7 @@ pub(crate) struct NormalEquations<const N: usize = MOST> {
 }
 
 /// Parameters, and the inverse of the normal matrix: their covariance for unit noise.
+#[derive(Clone)]
 pub(crate) struct LinearSolution<const N: usize = MOST> {
     pub(crate) values: [f64; N],
     pub(crate) inverse: [[f64; N]; N],
@@ -61,6 +62,15 @@ impl<const N: usize> NormalEquations<N> {
     pub(crate) fn log_determinant(&self) -> Option<f64> {
         let root = self.cholesky()?;
         Some(2.0 * (0..self.size).map(|j| root[j][j].ln()).sum::<f64>())
+    }
+
+    /// Half of what a solution takes off the sum of squares, less half of the determinant's logarithm: the
+    /// logarithm of the probability of the values of unit noise, parameters integrated out.
+    pub(crate) fn log_evidence(&self) -> Option<f64> {
+        let root = self.cholesky()?;
+        let solution = self.substitute(&root, self.right);
+        let off: f64 = (0..self.size).map(|j| solution[j] * self.right[j]).sum();
+        Some(0.5 * off - (0..self.size).map(|j| root[j][j].ln()).sum::<f64>())
     }
 
     fn cholesky(&self) -> Option<[[f64; N]; N]> {
@@ -171,6 +181,7 @@ pub(crate) fn levenberg_marquardt<M, const N: usize>(
 }
 
 /// A polynomial in u = (sample − centre)/half, fitted where |u| ≤ 1.
+#[derive(Clone)]
 pub(crate) struct LocalPolynomial {
     pub(crate) centre: f64,
     pub(crate) half: f64,

@@ -25,7 +25,7 @@ pub(super) const DEGREE: usize = MOST - 1;
 /// How large even coefficients may be where nothing shows them.
 const NEARLY_NONE: f64 = 0.1;
 /// The first coefficient that makes a bell other than a Gaussian.
-const SHAPE: usize = 3;
+pub(super) const SHAPE: usize = 3;
 /// Place of the level of a capped bell among its parameters.
 pub(super) const LEVEL: usize = MOST - 1;
 /// How much of a clipped bell may be cut off, as a logarithm: half of its height and more.
@@ -37,6 +37,9 @@ struct Shapes {
     together: [[f64; MOST - SHAPE]; 4],
     /// Deviation of each alone.
     alone: f64,
+    /// Deviation of their change, in one speed's shots, with the logarithm of the height, over all these:
+    /// fragments that part change a reflected pulse, and others hardly change.
+    change: f64,
 }
 
 /// Of incident, wall's and reflected pulses of 1,000 chains at random, dry and wet, from 0.06 to
@@ -51,6 +54,7 @@ const SHAPES: [Shapes; 3] = [
             [0.02, 0.0, 0.0, 0.0, -0.01, 0.0, 0.01, 0.0],
         ],
         alone: 0.04,
+        change: 0.3,
     },
     Shapes {
         mean: [-0.02, -0.02, 0.04, 0.01, 0.0, 0.0, 0.0, 0.0],
@@ -61,6 +65,7 @@ const SHAPES: [Shapes; 3] = [
             [0.0; 8],
         ],
         alone: 0.04,
+        change: 0.3,
     },
     Shapes {
         mean: [-0.03, -0.28, -0.01, 0.14, 0.04, -0.05, -0.01, 0.01],
@@ -71,14 +76,15 @@ const SHAPES: [Shapes; 3] = [
             [0.06, 0.04, 0.0, 0.01, -0.04, -0.02, 0.02, 0.0],
         ],
         alone: 0.05,
+        change: 3.0,
     },
 ];
 /// Residuals of bells fitted to computed pulses without noise, as a share of the height, at the top
 /// and in flanks that are fitted farther down: up to 2.5 m/s their rise begins with a kink.
-const INEXACT: (f64, f64) = (1.4e-4, 4e-4);
+pub(super) const INEXACT: (f64, f64) = (1.4e-4, 4e-4);
 /// Power of the window's width as which errors of time by them go: of fast dry shots they are 10, 3.4
 /// and 2.3 ns over widths of 1, 0.8 and 0.65.
-const EXPONENT: i32 = 3;
+pub(super) const EXPONENT: i32 = 3;
 /// Deviations by which the squares that a fit leaves may exceed those of noise.
 const ADEQUATE: f64 = 3.0;
 /// Shares of the window that are tried, in this order, where a bell leaves more than noise; of shots
@@ -162,20 +168,23 @@ pub(super) struct ShapePrior {
     mean: Row,
     /// Inverse root of the covariance: by its rows, coefficients less their means are independent
     /// and of deviation 1.
-    root: [Row; MOST],
+    pub(super) root: [Row; MOST],
+    /// See [`Shapes`].
+    pub(super) change: f64,
 }
 
 impl ShapePrior {
     /// Of a whole pulse over a share of the usual width. A skewed one is of no usual shape, and
     /// its coefficients may be as large as those of any.
     pub(super) fn of_whole(kind: PulseKind, skewness: f64, share: f64) -> Self {
-        let Shapes { mean, together, alone } = &SHAPES[kind as usize];
+        let Shapes { mean, together, alone, change } = &SHAPES[kind as usize];
         let powers = powers(share);
         let scaled = |of: &[f64; MOST - SHAPE]| -> Row {
             from_fn(|k| k.checked_sub(SHAPE).map_or(0.0, |i| of[i] * powers[k]))
         };
         let alone = powers.map(|power| alone.hypot(skewness) * power);
-        Self::new(scaled(mean), alone, &together.each_ref().map(scaled))
+        let change = *change;
+        Self { change, ..Self::new(scaled(mean), alone, &together.each_ref().map(scaled)) }
     }
 
     /// Of a pulse of unknown shape over so many times the usual width, over which coefficients are
@@ -205,7 +214,7 @@ impl ShapePrior {
                 (own - known) / factor[j][j]
             });
         }
-        Self { mean, root }
+        Self { mean, root, change: 0.0 }
     }
 }
 
@@ -290,7 +299,7 @@ impl BellTop {
 }
 
 /// Whether a bell over `noise` leaves no more than that.
-fn is_adequate(fit: &LocalPolynomial, noise: f64) -> bool {
+pub(super) fn is_adequate(fit: &LocalPolynomial, noise: f64) -> bool {
     (fit.residual / noise).powi(2) <= 1.0 + ADEQUATE * (2.0 / fit.freedom).sqrt()
 }
 
@@ -445,7 +454,7 @@ impl BellData {
         squares.is_finite().then_some((normal, squares))
     }
 
-    fn polynomial(
+    pub(super) fn polynomial(
         &self,
         optimum: &Optimum<Row>,
         centre: f64,
@@ -520,53 +529,4 @@ fn derivative_rows(u: f64) -> [Row; 4] {
         }
     }
     rows
-}
-
-/// The bell of the pulses of several shots, as points (u, height) of relative noise.
-pub(super) struct CommonBell {
-    pub(super) polynomial: LocalPolynomial,
-    prior: ShapePrior,
-    /// Relative noise of a sample, and residuals of the bell that all shots share: over all of a mean.
-    noise: (f64, f64),
-    /// The same residuals of one shot.
-    pub(super) inexact: f64,
-}
-
-impl CommonBell {
-    /// Of points with so much noise of so many shots, over a share of the usual width, so many samples
-    /// on either side; the search begins at another bell.
-    pub(super) fn new(
-        points: Vec<(f64, f64)>,
-        (noise, shots): (f64, f64),
-        (prior, share, half): (ShapePrior, f64, f64),
-        before: Option<Row>,
-    ) -> Option<Self> {
-        // Noise averages out over shots, and what bells leave does not.
-        let inexact = INEXACT.0 * share.powi(EXPONENT);
-        let shared = shots.sqrt() * inexact;
-        let data =
-            BellData { degree: DEGREE, points, noise: noise.hypot(shared), prior, capped: false };
-        let mut gaussian = [0.0; MOST];
-        gaussian[2] = -LN_2 * (WHOLE_WIDTH * share).powi(2);
-        let polynomial = data.polynomial(&data.fit(before.unwrap_or(gaussian))?, 0.0, half)?;
-        Some(Self { polynomial, prior, noise: (noise, shared), inexact })
-    }
-
-    pub(super) fn is_adequate(&self) -> bool {
-        is_adequate(&self.polynomial, self.noise.0.hypot(self.inexact))
-    }
-
-    /// Its maximum, with variances by noise in place of those for unit noise.
-    pub(super) fn top(&self, inverse: [f64; 2]) -> Option<BellTop> {
-        let at = (self.polynomial.maximum()?, inverse);
-        let (noise, inexact) = (self.noise.0.hypot(self.noise.1), self.noise.1);
-        let top = BellTop::new(&self.polynomial, at, &self.prior, (noise, inexact))?;
-        let squared = noise * noise;
-        Some(BellTop {
-            height_variance: squared * top.height_variance,
-            slope_variance: squared * top.slope_variance,
-            open_variance: squared * top.open_variance,
-            ..top
-        })
-    }
 }

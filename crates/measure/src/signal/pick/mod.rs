@@ -1,6 +1,7 @@
 //! Times of the pulses found, by four methods, each with its uncertainty.
 
 mod clipping;
+mod common_bell;
 mod correlation;
 mod log_polynomial;
 mod polynomial;
