@@ -301,6 +301,7 @@ fn measuring(
         )));
     }
     let of_rig = || Some((rig?.beads(), rig?.sensor_bead()));
+    let given = |corner: Option<Corner>| corner.map(|corner| corner.0).filter(|hz| *hz > 0.0);
     Ok(SignalOptions {
         find: FindOptions {
             polarity: picking.polarity.map_or(Polarity::Auto, Into::into),
@@ -310,9 +311,9 @@ fn measuring(
         },
         method: method(picking),
         high_pass_s: high_pass_hz.filter(|hz| *hz > 0.0).map(|hz| (TAU * hz).recip()),
-        low_pass: picking.smooth.map(|cutoff| LowPass { cutoff_hz: cutoff.0, order: ORDER }),
+        low_pass: given(picking.smooth).map(|cutoff_hz| LowPass { cutoff_hz, order: ORDER }),
         bandwidth: bandwidth(picking, rig)?,
-        mains_hz: picking.mains.map(|mains| mains.0),
+        mains_hz: given(picking.mains),
         calibration: SensorCalibration {
             sensitivities_v_n: picking
                 .sensitivity
@@ -383,7 +384,9 @@ pub(crate) fn grouping(arguments: &Arguments) -> Grouping {
 /// Refuses an option that no record takes, as a low-pass above half their sampling rate: it is
 /// reported once, not with every shot.
 fn suits(measured: &Measurement) -> Result<(), Failure> {
-    let unsuited = |shot: &&Shot| matches!(shot.flight, Err(MeasureError::Option(..)));
+    let unsuited = |shot: &&Shot| {
+        matches!(shot.flight, Err(MeasureError::Option(..) | MeasureError::LowCorner(..)))
+    };
     let first = measured.shots.first();
     let error = first.and_then(|shot| Some((shot, shot.flight.as_ref().err()?)));
     match error {

@@ -156,7 +156,7 @@ pub struct PickOptions {
     pub wall_polarity: Option<Way>,
     /// Smooth records by a low-pass without delay, forward and backward, of this corner
     #[arg(long, value_name = "FREQUENCY")]
-    pub smooth: Option<Frequency>,
+    pub smooth: Option<Corner>,
     /// Corner of the amplifier's low-pass, such as 180kHz, in place of the rig's: its delay and rounding are
     /// taken out of maxima; 0 leaves them
     #[arg(long, value_name = "FREQUENCY")]
@@ -169,7 +169,7 @@ pub struct PickOptions {
     pub ac_coupling: Option<Corner>,
     /// Frequency of the mains, such as 50Hz: hum in the record before a shot is held at its multiples
     #[arg(long, value_name = "FREQUENCY")]
-    pub mains: Option<Frequency>,
+    pub mains: Option<Corner>,
     /// Sensitivity of the sensor bead's sensor, such as 12mV/N: heights are also stated in N
     #[arg(long, value_name = "V/N")]
     pub sensitivity: Option<Sensitivity>,

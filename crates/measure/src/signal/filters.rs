@@ -152,13 +152,22 @@ pub struct Bandwidth {
     pub order: usize,
 }
 
+/// Widths at half maximum of the shortest pulses that low-passes leave, times the corner: of one
+/// pole's response to an impulse, and of the narrowest with more poles, near a Gaussian.
+const SHORTEST: [f64; 2] = [0.11, 0.3];
+
 impl Bandwidth {
-    /// Coefficients a and b of the inverse x = y + a y′ + b y″, in samples.
-    pub(crate) fn inverse(&self, interval_s: f64) -> Result<[f64; 2]> {
+    /// Coefficients a and b of the inverse x = y + a y′ + b y″, in samples, for a record whose widest
+    /// pulse is so many samples wide.
+    pub(crate) fn inverse(&self, interval_s: f64, widest: f64) -> Result<[f64; 2]> {
         MeasureError::positive("corner of the amplifier's low-pass in Hz", self.corner_hz)?;
         let name = "order of the amplifier's low-pass";
         let accepted = self.order == 1 || self.order == 2;
         MeasureError::require(accepted, name, self.order as f64, "1 or 2")?;
+        let least_hz = SHORTEST[usize::from(self.order > 1)] / (widest * interval_s);
+        if self.corner_hz < least_hz {
+            return Err(MeasureError::LowCorner(self.corner_hz, least_hz));
+        }
         let samples = (TAU * self.corner_hz * interval_s).recip();
         Ok(match self.order {
             1 => [samples, 0.0],

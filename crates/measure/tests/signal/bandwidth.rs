@@ -62,3 +62,15 @@ fn a_low_pass_of_another_order_is_refused() {
     let shot = measure(Channels::Summed(&samples), 1e-6, &measuring).unwrap();
     assert!(matches!(shot.flight, Err(MeasureError::Option(..))));
 }
+
+#[test]
+fn a_corner_that_no_pulse_as_short_passes_is_refused_with_the_least() {
+    let samples = recorded(Bandwidth { corner_hz: 50e3, order: 2 });
+    for (corner_hz, order) in [(180.0, 2), (180.0, 1)] {
+        let bandwidth = Some(Bandwidth { corner_hz, order });
+        let measuring = SignalOptions { bandwidth, ..SignalOptions::default() };
+        let shot = measure(Channels::Summed(&samples), 1e-6, &measuring).unwrap();
+        let Err(MeasureError::LowCorner(_, least_hz)) = shot.flight else { panic!("{shot:?}") };
+        assert!((1e3..1e4).contains(&least_hz), "{least_hz}");
+    }
+}

@@ -239,7 +239,8 @@ pub(crate) fn pick(
     let need = |pulse: &Option<Pulse>, kind| pulse.ok_or(MeasureError::Missing(kind));
     let incident = need(&found.incident, PulseKind::Incident)?;
     let wall = need(&found.wall, PulseKind::Wall)?;
-    let inverse = amplifier.map(|amplifier| amplifier.inverse(interval_s));
+    let widest = found.pulses().map(|pulse| pulse.width_samples).fold(0.0, f64::max);
+    let inverse = amplifier.map(|amplifier| amplifier.inverse(interval_s, widest));
     let inverse = inverse.transpose()?.filter(|_| *method == Method::Maximum);
     let view = |kind: PulseKind| ChannelView {
         range: ranges[usize::from(kind == PulseKind::Wall)],
