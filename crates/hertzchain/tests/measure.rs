@@ -469,15 +469,15 @@ fn frequencies_times_and_sensitivities_of_measure_have_units() {
 fn the_amplifiers_low_pass_has_the_names_that_fit_gives_it() {
     let folder = folder("names-of-low-pass");
     shots(&folder);
-    let refused = |options: &[&str]| {
+    let reported = |options: &[&str], code: i32| {
         let output = measure(&folder, &[&["."], options].concat());
-        assert_eq!(output.status.code(), Some(2), "{options:?}");
+        assert_eq!(output.status.code(), Some(code), "{options:?}");
         String::from_utf8(output.stderr).unwrap()
     };
-    let words = refused(&["--filter", "butterworth2"]);
+    let words = reported(&["--filter", "butterworth2"], 2);
     assert!(words.contains("--low-pass or --rig"), "{words}");
-    let words = refused(&["--low-pass", "50kHz", "--filter", "bessel4"]);
-    assert!(words.contains("--low-pass 0 leaves times"), "{words}");
+    let words = reported(&["--low-pass", "50kHz", "--filter", "bessel4"], 0);
+    assert!(words.contains("low-pass of 50000 Hz, order 4 (Bessel)"), "{words}");
 }
 
 #[test]

@@ -9,8 +9,7 @@ pub(crate) use results::{law, row, shot};
 
 use crate::failure::{Failure, unread};
 use crate::options::{
-    Corner, CurveOptions, Filter, Input, MeasureOptions as Arguments, MethodName,
-    PickOptions as Picking,
+    Corner, CurveOptions, Input, MeasureOptions as Arguments, MethodName, PickOptions as Picking,
 };
 use crate::{inference, input};
 use hertzchain_experiment::{self as experiment, Experiment};
@@ -343,23 +342,14 @@ fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandw
             "--low-pass corrects maxima, the times of --method local, and no others".to_owned(),
         ));
     }
-    let order = match (picking.filter, amplifier.map(|of| (of.order, of.kind))) {
-        (Some(Filter::First), _) | (None, None) => Some(1),
-        (Some(Filter::Butterworth2), _) => Some(2),
-        (None, Some((experiment::LowPass::First, _))) => Some(1),
-        (None, Some((experiment::LowPass::Second, experiment::LowPassKind::Butterworth))) => {
-            Some(2)
-        }
-        _ => None,
+    let (order, kind) = match (picking.filter, amplifier) {
+        (Some(filter), _) => filter.names(),
+        (None, Some(of)) => (of.order.name(), Some(of.kind.name())),
+        (None, None) => ("as the recording states", None),
     };
-    let order = order.ok_or_else(|| {
-        Failure::User(
-            "only low-passes of first order and Butterworth's of second are taken out of maxima: --filter names \
-             another one, or the rig's amplifier has it; --low-pass 0 leaves times as they are"
-                .to_owned(),
-        )
-    })?;
-    Ok(Some(Bandwidth { corner_hz, order }))
+    let orders = ["first", "second", "third", "fourth"];
+    let order = orders.iter().position(|name| *name == order).map_or(0, |index| index + 1);
+    Ok(Some(Bandwidth { corner_hz, order, bessel: order > 1 && kind == Some("bessel") }))
 }
 
 fn method(picking: &Picking) -> Method {

@@ -161,7 +161,7 @@ pub struct PickOptions {
     /// taken out of maxima; 0 leaves them
     #[arg(long, value_name = "FREQUENCY")]
     pub low_pass: Option<Corner>,
-    /// Order and kind of the amplifier's low-pass; the rig's, or one pole, when absent
+    /// Order and kind of the amplifier's low-pass; the rig's, the recording's, or one pole, when absent
     #[arg(long, value_enum, value_name = "NAME")]
     pub filter: Option<Filter>,
     /// Corner of the AC coupling (high-pass) that the signal went through, such as 0.5Hz: its droop is corrected; 0 leaves it, also where a recording states a corner

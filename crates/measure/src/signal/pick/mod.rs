@@ -13,8 +13,8 @@ pub(crate) use {clipping::clipped_top, pooled::pool};
 
 use crate::error::{MeasureError, Result};
 use crate::signal::{
-    Bandwidth, Channels, DigitiserRange, Estimate, Found, Normalisation, Pulse, PulseKind,
-    SensorCalibration,
+    Bandwidth, Channels, DigitiserRange, Estimate, Found, MOST_POLES, Normalisation, Pulse,
+    PulseKind, SensorCalibration,
 };
 use correlation::Correlator;
 
@@ -139,7 +139,7 @@ pub(crate) struct ChannelView<'a> {
     /// Sample of the wall's maximum, for the reflected pulse.
     wall: Option<usize>,
     /// Coefficients of the inverse of the amplifier's low-pass; 0 where none is corrected.
-    inverse: [f64; 2],
+    inverse: [f64; MOST_POLES],
 }
 
 impl<'a> ChannelView<'a> {
@@ -154,7 +154,7 @@ impl<'a> ChannelView<'a> {
             range: None,
             summed: channels.is_summed(),
             wall: None,
-            inverse: [0.0; 2],
+            inverse: [0.0; MOST_POLES],
         }
     }
 

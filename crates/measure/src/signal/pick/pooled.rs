@@ -6,7 +6,7 @@
 use super::log_polynomial::{BellTop, CommonBell, NARROWER, ShapePrior, half_width};
 use super::{ChannelView, Picked, Systematic};
 use crate::signal::linear::NormalEquations;
-use crate::signal::{Pulse, median};
+use crate::signal::{MOST_POLES, Pulse, median};
 
 /// Samples that are kept on either side of a pulse, in halves of a whole pulse's fit.
 const MARGIN: f64 = 1.6;
@@ -37,7 +37,7 @@ pub struct PulseSamples {
     /// Of single samples, and of averages over many.
     noise: f64,
     broad_noise: f64,
-    inverse: [f64; 2],
+    inverse: [f64; MOST_POLES],
     /// Falls a sample under the pulse: their deviation, with its sign, and the likely one.
     falls: [f64; 2],
     interval_s: f64,
@@ -137,6 +137,8 @@ impl PulseSamples {
         let [under, likely] = self.falls.map(moved_by);
         let variance = place.variances[0] + shape * shape;
         let misfit = (place.squares / place.freedom).sqrt();
+        // What a low-pass takes of a top goes as its curvature.
+        let before = height * (top.log_gain / place.width.powi(2)).exp();
         Picked {
             time_s: self.interval_s * (place.time + half * top.u + likely),
             sigma_s: (self.interval_s * variance.sqrt().hypot(under)).hypot(self.of_drift_s),
@@ -144,8 +146,8 @@ impl PulseSamples {
                 superposition_s: -under * self.interval_s,
                 shape_s: shape * self.interval_s,
             },
-            height,
-            height_sigma: height * (place.variances[1] + top.height_variance).sqrt(),
+            height: before,
+            height_sigma: before * (place.variances[1] + top.height_variance).sqrt(),
             signal_to_noise: height / self.noise,
             misfit: (self.noise > 0.0).then_some(misfit),
             ..*own
