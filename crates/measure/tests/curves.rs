@@ -201,6 +201,18 @@ fn maxima_are_corrected_for_the_low_pass_that_a_recording_states_unless_options_
 }
 
 #[test]
+fn what_lies_under_pulses_of_a_summed_channel_does_not_average_out_of_ratios() {
+    let folder = folder("ratios");
+    let measured = measured(&[series(&folder, "dry", 0.5, 9000.0)]);
+    let curves = Curves::of(&measured.shots, &Grouping::default());
+    let ratio = curves.cases[0].rows[0].reflected_over_incident.unwrap();
+    let picks = measured.shots[0].flight.as_ref().unwrap().picks;
+    let shared = picks.reflected.unwrap().systematic.height / picks.incident.height;
+    let scatter = ratio.deviation / (ratio.count as f64).sqrt();
+    assert!(shared > 2.0 * scatter && ratio.error > 0.9 * shared, "{ratio:?} {shared}");
+}
+
+#[test]
 fn shots_of_one_programmed_speed_are_one_row_with_mean_and_spread() {
     let folder = folder("row");
     let files = [0.2, 0.5, 1.0].map(|speed| series(&folder, "dry", speed, 9000.0));

@@ -12,7 +12,7 @@ use crate::options::{
     Corner, CurveOptions, Input, MeasureOptions as Arguments, MethodName, PickOptions as Picking,
 };
 use crate::{inference, input};
-use hertzchain_experiment::{self as experiment, Experiment};
+use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
 use hertzchain_measure::MeasureError;
 use hertzchain_measure::records::{Parts, ReadOptions, Rows, is_recording, seekable, text};

@@ -295,6 +295,21 @@ impl Flight {
         [Some(self.incident_s), self.reflected_s]
     }
 
+    /// Height of a pulse over that of the incident one, unless it is that.
+    pub(crate) fn over_incident(&self, kind: PulseKind) -> Option<Estimate> {
+        match kind {
+            PulseKind::Incident => None,
+            PulseKind::Wall => Some(self.wall_over_incident),
+            PulseKind::Reflected => self.reflected_over_incident,
+        }
+    }
+
+    /// The part of that one's error which equal shots share.
+    pub(crate) fn shared_height(&self, kind: PulseKind) -> Option<f64> {
+        let pulse = self.picks.pulse(kind)?;
+        Some(self.over_incident(kind)?.value * pulse.systematic.height / pulse.height)
+    }
+
     pub(crate) fn without_return(&self) -> Self {
         let mut picks = self.picks;
         picks.reflected = None;

@@ -543,11 +543,7 @@ impl Slope {
 const DERIVATIVES: usize = MOST_POLES + 3;
 
 fn derivative_rows(u: f64) -> [Row; DERIVATIVES] {
-    let mut rows = [powers(u); DERIVATIVES];
-    for order in 1..DERIVATIVES {
-        rows[order] = from_fn(|k| falling(k, order) * u.powi(k.saturating_sub(order) as i32));
-    }
-    rows
+    from_fn(|order| from_fn(|k| falling(k, order) * u.powi(k.saturating_sub(order) as i32)))
 }
 
 /// n (n − 1) … of so many factors.

@@ -67,7 +67,11 @@ impl Top {
             time_s: time + likely,
             // Of a parabola heights differ by a deviation at two deviations of its maximum.
             sigma_s: by_noise(self.slope_share).max(0.5 * self.reach * fit.half).hypot(under),
-            systematic: Systematic { superposition_s: under, shape_s: by_noise(self.open_share) },
+            systematic: Systematic {
+                superposition_s: under,
+                shape_s: by_noise(self.open_share),
+                height: 0.0,
+            },
             height: self.gain * self.height,
             height_sigma: noise * self.gain * self.height * self.height_share,
             width_s: pulse.width_samples,

@@ -6,7 +6,7 @@
 use super::log_polynomial::{BellTop, CommonBell, NARROWER, ShapePrior, half_width};
 use super::{ChannelView, Picked, Systematic};
 use crate::signal::linear::NormalEquations;
-use crate::signal::{MOST_POLES, Pulse, median};
+use crate::signal::{Estimate, MOST_POLES, Pulse, median};
 
 /// Samples that are kept on either side of a pulse, in halves of a whole pulse's fit.
 const MARGIN: f64 = 1.6;
@@ -40,6 +40,7 @@ pub struct PulseSamples {
     inverse: [f64; MOST_POLES],
     /// Falls a sample under the pulse: their deviation, with its sign, and the likely one.
     falls: [f64; 2],
+    under: Estimate,
     interval_s: f64,
     /// Error in s of its maximum's time by a fitted baseline.
     pub(crate) of_drift_s: f64,
@@ -64,6 +65,7 @@ impl PulseSamples {
             broad_noise: view.broad_noise(pulse),
             inverse: view.inverse,
             falls: [view.fall_under(pulse, time), view.likely_fall(pulse, time)],
+            under: view.level_under(pulse, time),
             interval_s,
             of_drift_s: 0.0,
         })
@@ -145,6 +147,7 @@ impl PulseSamples {
             systematic: Systematic {
                 superposition_s: -under * self.interval_s,
                 shape_s: shape * self.interval_s,
+                height: 0.0,
             },
             height: before,
             height_sigma: before * (place.variances[1] + top.height_variance).sqrt(),
@@ -152,6 +155,7 @@ impl PulseSamples {
             misfit: (self.noise > 0.0).then_some(misfit),
             ..*own
         }
+        .above(self.under)
     }
 }
 
