@@ -196,7 +196,7 @@ fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
         for corrected in [false, true] {
             filtered.extend(each(&[40.0, 60.0], &|db| {
                 let how = if corrected { "taken out" } else { "left" };
-                let low_pass = Some(Bandwidth { corner_hz: 50e3, order });
+                let low_pass = Some(Bandwidth { corner_hz: 50e3, order, bessel: false });
                 let name = format!("low-pass of 50 kHz, order {order}, {how}, {db} dB");
                 (name, Fault { low_pass, corrected, ..at(db) })
             }));

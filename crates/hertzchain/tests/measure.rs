@@ -222,7 +222,7 @@ fn calibrated_sensors_state_forces_and_the_wall_channels_delay_is_taken_out() {
         json(&measure(&folder, &[&both, arguments].concat()))["shots"][0].clone()
     };
     let plain = shot(&[]);
-    let options = ["--skew", "-3us", "--sensitivity", "20mV/N", "--wall-sensitivity", "0.04"];
+    let options = ["--skew", "-3us", "--sensitivity", "20mV/N", "--wall-sensitivity", "0.04V/N"];
     let found = shot(&options);
     let of = |shot: &Value, name: &str| shot[name]["value"].as_f64().unwrap();
     let moved = of(&found, "tof_incident_s") - of(&plain, "tof_incident_s");
@@ -443,18 +443,41 @@ fn a_low_pass_above_half_the_rate_is_told_once() {
 }
 
 #[test]
+fn frequencies_times_and_sensitivities_of_measure_have_units() {
+    let folder = folder("units");
+    shots(&folder);
+    for plain in [
+        ["--skew", "5"],
+        ["--low-pass", "180"],
+        ["--ac-coupling", "0.5"],
+        ["--smooth", "50"],
+        ["--mains", "50"],
+        ["--sensitivity", "12"],
+    ] {
+        let output = measure(&folder, &[&["."], &plain[..]].concat());
+        assert_eq!(output.status.code(), Some(2), "{plain:?}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert!(reported.contains("with its unit, such as"), "{reported}");
+    }
+    let options: MeasureOptions =
+        serde_json::from_str(r#"{"records": [], "skew": 5e-6, "low_pass": 180e3}"#).unwrap();
+    assert_eq!(options.picking.skew.unwrap().0, 5e-6);
+    assert_eq!(options.picking.low_pass.unwrap().0, 180e3);
+}
+
+#[test]
 fn the_amplifiers_low_pass_has_the_names_that_fit_gives_it() {
     let folder = folder("names-of-low-pass");
     shots(&folder);
-    let refused = |options: &[&str]| {
+    let reported = |options: &[&str], code: i32| {
         let output = measure(&folder, &[&["."], options].concat());
-        assert_eq!(output.status.code(), Some(2), "{options:?}");
+        assert_eq!(output.status.code(), Some(code), "{options:?}");
         String::from_utf8(output.stderr).unwrap()
     };
-    let words = refused(&["--filter", "butterworth2"]);
+    let words = reported(&["--filter", "butterworth2"], 2);
     assert!(words.contains("--low-pass or --rig"), "{words}");
-    let words = refused(&["--low-pass", "50kHz", "--filter", "bessel4"]);
-    assert!(words.contains("--low-pass 0 leaves times"), "{words}");
+    let words = reported(&["--low-pass", "50kHz", "--filter", "bessel4"], 0);
+    assert!(words.contains("low-pass of 50000 Hz, order 4 (Bessel)"), "{words}");
 }
 
 #[test]

@@ -319,6 +319,12 @@ fn row(
             Some(Estimate { value, sigma: 0.0 })
         })
     };
+    let ratio = |kind: PulseKind| {
+        let mut ratio = of(&|flight| flight.over_incident(kind))?;
+        let shared = counted.iter().filter_map(|shot| shot.flight.shared_height(kind));
+        ratio.share(shared.sum::<f64>() / ratio.count as f64);
+        Some(ratio)
+    };
     let speeds: Vec<Estimate> = counted.iter().map(|shot| shot.speed).collect();
     let speed_m_s = mean_speed(&speeds)?;
     let moved = [0, 1].map(|time| at_speed(&counted, speed_m_s, time));
@@ -337,8 +343,8 @@ fn row(
         returns_missing: counted.len() - returns - returns_undecided,
         incident_s,
         reflected_s,
-        wall_over_incident: of(&|flight| Some(flight.wall_over_incident)).unwrap_or(NO_HEIGHTS),
-        reflected_over_incident: of(&|flight| flight.reflected_over_incident),
+        wall_over_incident: ratio(PulseKind::Wall).unwrap_or(NO_HEIGHTS),
+        reflected_over_incident: ratio(PulseKind::Reflected),
         widths_s: PulseKind::ALL.map(width),
     })
 }

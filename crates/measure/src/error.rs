@@ -64,6 +64,19 @@ pub enum MeasureError {
     /// The method found no maximum, or no crossing, where the pulse is.
     #[error("the {0} pulse has no {1} where it was looked for")]
     NoPick(PulseKind, &'static str),
+    /// A pulse is not after the one before it, by so many s.
+    #[error(
+        "the {0} pulse is {2:.3e} s before the {1} pulse, so that a time of flight is not positive: \
+         are skew and filter those of the record?"
+    )]
+    OutOfOrder(PulseKind, PulseKind, f64),
+    /// A corner in Hz below the least, the second number, of an amplifier that pulses as short as the
+    /// record's pass.
+    #[error(
+        "corner of the amplifier's low-pass is {0} Hz: pulses as short as the record's need \
+         {1:.0} Hz or more"
+    )]
+    LowCorner(f64, f64),
     /// Fewer than two different abscissas.
     #[error("a power law needs at least two different abscissas")]
     TooFew,

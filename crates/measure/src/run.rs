@@ -131,8 +131,7 @@ fn measured_one_by_one(
     options: &Options,
     watch: &dyn Watch,
 ) -> Measurement {
-    let mut measurement =
-        Measurement { bandwidth: options.measuring.bandwidth, ..Measurement::default() };
+    let mut measurement = Measurement::default();
     let mut records = records.take_while(|_| !watch.stopped());
     let (mut refused, mut speeds) = (Vec::new(), IndexMap::new());
     let mut batch = gather(&mut records, &mut refused);
@@ -237,11 +236,22 @@ pub(crate) fn stated_high_pass_hz(record: &Record, options: &Options) -> Option<
 }
 
 /// The amplifier's low-pass that maxima are corrected for because the recording states it.
-pub(crate) fn stated_bandwidth(record: &Record, options: &Options) -> Option<Bandwidth> {
+fn stated_bandwidth(record: &Record, options: &Options) -> Option<Bandwidth> {
     let measuring = &options.measuring;
     let is_free = measuring.bandwidth.is_none() && !options.keep_low_pass;
     let is_maximum = measuring.method == Method::Maximum;
     record.low_pass.filter(|_| is_free && is_maximum)
+}
+
+/// The amplifier's low-pass that maxima are corrected for: that of the options, of whose order and
+/// kind the recording's stand in, or the recording's.
+pub(crate) fn bandwidth(record: &Record, options: &Options) -> Option<Bandwidth> {
+    let Some(asked) = options.measuring.bandwidth else {
+        return stated_bandwidth(record, options);
+    };
+    let pole = Bandwidth { order: 1, ..asked };
+    let stated = || record.low_pass.map(|of| Bandwidth { corner_hz: asked.corner_hz, ..of });
+    Some(if asked.order == 0 { stated().unwrap_or(pole) } else { asked })
 }
 
 impl Measurement {
@@ -275,15 +285,13 @@ impl Measurement {
                  corrected; --ac-coupling states another corner, 0 leaves the droop"
             )
         }));
-        if let Some(bandwidth) = stated_bandwidth(record, options) {
-            self.bandwidth.get_or_insert(bandwidth);
-            let Bandwidth { corner_hz, order } = bandwidth;
-            notes.push(format!(
-                "states that its amplifier had a low-pass of {corner_hz} Hz, order {order}, which \
-                 maxima are corrected for; --low-pass states another corner, 0 leaves times as they \
-                 are"
-            ));
-        }
+        self.bandwidth = self.bandwidth.or_else(|| bandwidth(record, options));
+        notes.extend(stated_bandwidth(record, options).map(|bandwidth| {
+            format!(
+                "states that its amplifier had a {bandwidth}, which maxima are corrected for; \
+                 --low-pass states another corner, 0 leaves times as they are"
+            )
+        }));
         notes.extend(several.then(|| {
             "several shots with quiet between them were cut apart; --whole keeps a record one shot, \
              --level and --shot-samples cut otherwise"

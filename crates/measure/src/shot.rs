@@ -3,7 +3,7 @@
 use crate::Options;
 use crate::error::Result;
 use crate::records::Record;
-use crate::run::{stated_bandwidth, stated_high_pass_hz};
+use crate::run::{bandwidth, stated_high_pass_hz};
 use crate::signal::{
     Channels, DigitiserRange, Estimate, FindOptions, Flight, Measured, Picked, Picks, PulseKind,
     PulseSamples, QualityFlag, SensorCalibration, SignalOptions,
@@ -71,7 +71,7 @@ impl Shot {
                 ..asked.find
             },
             high_pass_s: asked.high_pass_s.or(stated_s),
-            bandwidth: asked.bandwidth.or_else(|| stated_bandwidth(record, options)),
+            bandwidth: bandwidth(record, options),
             ..asked.clone()
         };
         let measured = crate::signal::measure(channels, record.interval_s, &measuring);

@@ -175,7 +175,7 @@ fn maxima_are_corrected_for_the_low_pass_that_a_recording_states_unless_options_
     };
     let given = |corner_hz: f64, order| Options {
         measuring: SignalOptions {
-            bandwidth: Some(Bandwidth { corner_hz, order }),
+            bandwidth: Some(Bandwidth { corner_hz, order, bessel: false }),
             ..SignalOptions::default()
         },
         ..Options::default()
@@ -193,11 +193,23 @@ fn maxima_are_corrected_for_the_low_pass_that_a_recording_states_unless_options_
             assert_ne!(flights, unasked.2);
         }
     }
-    // Bessel's two poles are not taken out.
-    let files = stated("second", "bessel");
-    let bessel = flights(&files, &Options::default());
-    assert_eq!(bessel, flights(&files, &kept));
-    assert_eq!(bessel.1, None);
+    // Without an order of its own, a corner has the recording's.
+    let files = stated("third", "bessel");
+    let (bessel, corner) = (flights(&files, &Options::default()), flights(&files, &given(20e3, 0)));
+    assert_eq!(bessel.1, Some(Bandwidth { corner_hz: 20e3, order: 3, bessel: true }));
+    assert_eq!((bessel.1, bessel.2), (corner.1, corner.2));
+}
+
+#[test]
+fn what_lies_under_pulses_of_a_summed_channel_does_not_average_out_of_ratios() {
+    let folder = folder("ratios");
+    let measured = measured(&[series(&folder, "dry", 0.5, 9000.0)]);
+    let curves = Curves::of(&measured.shots, &Grouping::default());
+    let ratio = curves.cases[0].rows[0].reflected_over_incident.unwrap();
+    let picks = measured.shots[0].flight.as_ref().unwrap().picks;
+    let shared = picks.reflected.unwrap().systematic.height / picks.incident.height;
+    let scatter = ratio.deviation / (ratio.count as f64).sqrt();
+    assert!(shared > 2.0 * scatter && ratio.error > 0.9 * shared, "{ratio:?} {shared}");
 }
 
 #[test]

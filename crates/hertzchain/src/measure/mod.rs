@@ -9,11 +9,10 @@ pub(crate) use results::{law, row, shot};
 
 use crate::failure::{Failure, unread};
 use crate::options::{
-    Corner, CurveOptions, Filter, Input, MeasureOptions as Arguments, MethodName,
-    PickOptions as Picking,
+    Corner, CurveOptions, Input, MeasureOptions as Arguments, MethodName, PickOptions as Picking,
 };
 use crate::{inference, input};
-use hertzchain_experiment::{self as experiment, Experiment};
+use hertzchain_experiment::Experiment;
 use hertzchain_infer::Data;
 use hertzchain_measure::MeasureError;
 use hertzchain_measure::records::{Parts, ReadOptions, Rows, is_recording, seekable, text};
@@ -301,6 +300,7 @@ fn measuring(
         )));
     }
     let of_rig = || Some((rig?.beads(), rig?.sensor_bead()));
+    let given = |corner: Option<Corner>| corner.map(|corner| corner.0).filter(|hz| *hz > 0.0);
     Ok(SignalOptions {
         find: FindOptions {
             polarity: picking.polarity.map_or(Polarity::Auto, Into::into),
@@ -310,9 +310,9 @@ fn measuring(
         },
         method: method(picking),
         high_pass_s: high_pass_hz.filter(|hz| *hz > 0.0).map(|hz| (TAU * hz).recip()),
-        low_pass: picking.smooth.map(|cutoff| LowPass { cutoff_hz: cutoff.0, order: ORDER }),
+        low_pass: given(picking.smooth).map(|cutoff_hz| LowPass { cutoff_hz, order: ORDER }),
         bandwidth: bandwidth(picking, rig)?,
-        mains_hz: picking.mains.map(|mains| mains.0),
+        mains_hz: given(picking.mains),
         calibration: SensorCalibration {
             sensitivities_v_n: picking
                 .sensitivity
@@ -342,23 +342,14 @@ fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandw
             "--low-pass corrects maxima, the times of --method local, and no others".to_owned(),
         ));
     }
-    let order = match (picking.filter, amplifier.map(|of| (of.order, of.kind))) {
-        (Some(Filter::First), _) | (None, None) => Some(1),
-        (Some(Filter::Butterworth2), _) => Some(2),
-        (None, Some((experiment::LowPass::First, _))) => Some(1),
-        (None, Some((experiment::LowPass::Second, experiment::LowPassKind::Butterworth))) => {
-            Some(2)
-        }
-        _ => None,
+    let (order, kind) = match (picking.filter, amplifier) {
+        (Some(filter), _) => filter.names(),
+        (None, Some(of)) => (of.order.name(), Some(of.kind.name())),
+        (None, None) => ("as the recording states", None),
     };
-    let order = order.ok_or_else(|| {
-        Failure::User(
-            "only low-passes of first order and Butterworth's of second are taken out of maxima: --filter names \
-             another one, or the rig's amplifier has it; --low-pass 0 leaves times as they are"
-                .to_owned(),
-        )
-    })?;
-    Ok(Some(Bandwidth { corner_hz, order }))
+    let orders = ["first", "second", "third", "fourth"];
+    let order = orders.iter().position(|name| *name == order).map_or(0, |index| index + 1);
+    Ok(Some(Bandwidth { corner_hz, order, bessel: order > 1 && kind == Some("bessel") }))
 }
 
 fn method(picking: &Picking) -> Method {
@@ -383,7 +374,9 @@ pub(crate) fn grouping(arguments: &Arguments) -> Grouping {
 /// Refuses an option that no record takes, as a low-pass above half their sampling rate: it is
 /// reported once, not with every shot.
 fn suits(measured: &Measurement) -> Result<(), Failure> {
-    let unsuited = |shot: &&Shot| matches!(shot.flight, Err(MeasureError::Option(..)));
+    let unsuited = |shot: &&Shot| {
+        matches!(shot.flight, Err(MeasureError::Option(..) | MeasureError::LowCorner(..)))
+    };
     let first = measured.shots.first();
     let error = first.and_then(|shot| Some((shot, shot.flight.as_ref().err()?)));
     match error {

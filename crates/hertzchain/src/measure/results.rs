@@ -38,8 +38,9 @@ impl Serialize for Report<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self { measured, curves } = self;
         let mut all = serializer.serialize_map(None)?;
-        let low_pass =
-            measured.bandwidth.map(|of| json!({ "corner_hz": of.corner_hz, "order": of.order }));
+        let low_pass = measured
+            .bandwidth
+            .map(|of| json!({ "corner_hz": of.corner_hz, "order": of.order, "bessel": of.bessel }));
         all.serialize_entry("low_pass", &low_pass)?;
         all.serialize_entry("cases", &Each(&curves.cases, case))?;
         all.serialize_entry("lost", &Each(&curves.unmeasured, unmeasured))?;

@@ -156,12 +156,12 @@ pub struct PickOptions {
     pub wall_polarity: Option<Way>,
     /// Smooth records by a low-pass without delay, forward and backward, of this corner
     #[arg(long, value_name = "FREQUENCY")]
-    pub smooth: Option<Frequency>,
+    pub smooth: Option<Corner>,
     /// Corner of the amplifier's low-pass, such as 180kHz, in place of the rig's: its delay and rounding are
     /// taken out of maxima; 0 leaves them
     #[arg(long, value_name = "FREQUENCY")]
     pub low_pass: Option<Corner>,
-    /// Order and kind of the amplifier's low-pass; the rig's, or one pole, when absent
+    /// Order and kind of the amplifier's low-pass; the rig's, the recording's, or one pole, when absent
     #[arg(long, value_enum, value_name = "NAME")]
     pub filter: Option<Filter>,
     /// Corner of the AC coupling (high-pass) that the signal went through, such as 0.5Hz: its droop is corrected; 0 leaves it, also where a recording states a corner
@@ -169,7 +169,7 @@ pub struct PickOptions {
     pub ac_coupling: Option<Corner>,
     /// Frequency of the mains, such as 50Hz: hum in the record before a shot is held at its multiples
     #[arg(long, value_name = "FREQUENCY")]
-    pub mains: Option<Frequency>,
+    pub mains: Option<Corner>,
     /// Sensitivity of the sensor bead's sensor, such as 12mV/N: heights are also stated in N
     #[arg(long, value_name = "V/N")]
     pub sensitivity: Option<Sensitivity>,

@@ -1,5 +1,6 @@
 //! Values of options: from text with or without a unit, or from a JSON number in SI.
 
+use super::given::has_unit;
 use clap::ValueEnum;
 use hertzchain_experiment::units::parse_in;
 use hertzchain_infer::{FEWEST_SHOTS, Kind};
@@ -68,9 +69,10 @@ pub(super) fn some_speeds<'de, D: Deserializer<'de>>(
     speeds(source).map(Some)
 }
 
-/// Declares a number that is read from text, for the command line and JSON alike.
+/// Declares a number that is read from text, for the command line and JSON alike; of one that needs
+/// a unit, a JSON number is in that of SI.
 macro_rules! numbers {
-    ($($(#[$doc:meta])* $name:ident($inner:ty): $expected:expr, $read:expr;)*) => {$(
+    ($($(#[$doc:meta])* $name:ident($inner:ty)$( in $unit:literal)?: $expected:expr, $read:expr;)*) => {$(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize)]
         pub struct $name(pub $inner);
@@ -86,10 +88,20 @@ macro_rules! numbers {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-                from_text(source)
+                let text = match Text::deserialize(source)? {
+                    Text::Words(text) => text,
+                    number => format!("{number}{}", concat!("", $(" ", $unit)?)),
+                };
+                text.parse().map_err(D::Error::custom)
             }
         }
     )*};
+}
+
+/// As [`number`], of a text with a unit: between 5 s and 5 us, or 180 Hz and 180 kHz, lie factors of
+/// 1000 and more. 0 needs none.
+fn quantity(text: &str, unit: &str) -> Option<f64> {
+    number(text, unit).filter(|value| *value == 0.0 || has_unit(text))
 }
 
 fn number(text: &str, unit: &str) -> Option<f64> {
@@ -121,15 +133,15 @@ numbers! {
     Time(f64): "a positive time, such as 0.5us, or 5e-7 for s",
         |text| number(text, "s").filter(|time| *time > 0.0);
     /// A time in s that may be negative.
-    Delay(f64): "a time, such as 0.5us or -0.5us, or 5e-7 for s", |text| number(text, "s");
+    Delay(f64) in "s": "a time with its unit, such as 0.5us or -0.5us", |text| quantity(text, "s");
     /// A sensitivity in V/N.
-    Sensitivity(f64): "a positive sensitivity, such as 12mV/N, or 0.012 for V/N",
-        |text| number(text, "V/N").filter(|sensitivity| *sensitivity > 0.0);
+    Sensitivity(f64) in "V/N": "a positive sensitivity with its unit, such as 12mV/N",
+        |text| quantity(text, "V/N").filter(|sensitivity| *sensitivity > 0.0);
     /// A positive frequency or sampling rate in Hz.
     Frequency(f64): "a rate such as 1MHz, 500kS/s or 1e6", |text| hertz(text).filter(|rate| *rate > 0.0);
     /// A frequency in Hz, or 0 for none.
-    Corner(f64): "a frequency such as 180kHz or 0.5Hz, or 0 for none",
-        |text| hertz(text).filter(|rate| *rate >= 0.0);
+    Corner(f64) in "Hz": "a frequency with its unit, such as 180kHz or 0.5Hz, or 0 for none",
+        |text| hertz(text).filter(|rate| *rate == 0.0 || (*rate > 0.0 && has_unit(text)));
     /// A voltage in V.
     Voltage(f64): "volts such as 0.2 or -0.2", |text| number(text, "V");
     /// A share between 0 and 1.

@@ -146,13 +146,17 @@ impl OpenSeries {
 /// The amplifier's low-pass, if it is one of those that [`Bandwidth`] has.
 fn low_pass(open: &H5File) -> Option<Bandwidth> {
     let [corner, order, kind] = LOW_PASS;
-    let order = match (&*text(open, order)?, &*text(open, kind)?) {
-        ("first", _) => 1,
-        ("second", "butterworth") => 2,
+    let orders = ["first", "second", "third", "fourth"];
+    let order = text(open, order)?;
+    let order = orders.iter().position(|name| *name == order)? + 1;
+    let bessel = match &*text(open, kind)? {
+        "bessel" => order > 1,
+        "butterworth" => false,
+        _ if order == 1 => false,
         _ => return None,
     };
     let corner_hz = number_text(open, corner).filter(|hz| hz.is_finite() && *hz > 0.0)?;
-    Some(Bandwidth { corner_hz, order })
+    Some(Bandwidth { corner_hz, order, bessel })
 }
 
 /// The channels of a file, with their names: one, or one a sensor.

@@ -2,6 +2,7 @@
 
 use crate::error::{MeasureError, Result, all_finite};
 use std::f64::consts::{PI, SQRT_2, TAU};
+use std::fmt::{self, Display, Formatter};
 
 /// Corrects a record for AC coupling: the exact inverse of a first-order high-pass
 /// τ y' + y = τ x' from rest by the trapezoidal rule,
@@ -148,22 +149,67 @@ pub(crate) fn triangular_mean(values: &[f64], length: usize) -> Vec<f64> {
 pub struct Bandwidth {
     /// Its corner in Hz, where 3 dB are missing.
     pub corner_hz: f64,
-    /// 1: one pole. 2: a Butterworth filter's two.
+    /// Number of poles, 1 to 4; 0 for that and the kind which a recording states, else one pole.
     pub order: usize,
+    /// Whether it is Bessel's rather than Butterworth's.
+    pub bessel: bool,
 }
 
+impl Display for Bandwidth {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let kind = match (self.order, self.bessel) {
+            (..2, _) => "",
+            (_, true) => " (Bessel)",
+            (_, false) => " (Butterworth)",
+        };
+        write!(f, "low-pass of {} Hz, order {}{kind}", self.corner_hz, self.order)
+    }
+}
+
+/// Longest [`Bandwidth::inverse`].
+pub(crate) const MOST_POLES: usize = 4;
+
+/// Widths at half maximum of the shortest pulses that low-passes leave, times the corner: of one
+/// pole's response to an impulse, and of the narrowest with more poles, near a Gaussian.
+const SHORTEST: [f64; 2] = [0.11, 0.3];
+
 impl Bandwidth {
-    /// Coefficients a and b of the inverse x = y + a y′ + b y″, in samples.
-    pub(crate) fn inverse(&self, interval_s: f64) -> Result<[f64; 2]> {
+    /// Coefficients of the inverse x = y + a₁ y′ + a₂ y″ + …, in samples, for a record whose widest
+    /// pulse is so many samples wide.
+    pub(crate) fn inverse(&self, interval_s: f64, widest: f64) -> Result<[f64; MOST_POLES]> {
         MeasureError::positive("corner of the amplifier's low-pass in Hz", self.corner_hz)?;
         let name = "order of the amplifier's low-pass";
-        let accepted = self.order == 1 || self.order == 2;
-        MeasureError::require(accepted, name, self.order as f64, "1 or 2")?;
+        let accepted = self.order <= MOST_POLES;
+        MeasureError::require(accepted, name, self.order as f64, "1 to 4")?;
+        let least_hz = SHORTEST[usize::from(self.order > 1)] / (widest * interval_s);
+        if self.corner_hz < least_hz {
+            return Err(MeasureError::LowCorner(self.corner_hz, least_hz));
+        }
         let samples = (TAU * self.corner_hz * interval_s).recip();
-        Ok(match self.order {
-            1 => [samples, 0.0],
-            _ => [SQRT_2 * samples, samples * samples],
-        })
+        let coefficients = self.denominator();
+        Ok(std::array::from_fn(|k| coefficients[k] * samples.powi(k as i32 + 1)))
+    }
+
+    /// Coefficients of s, s² and so on of 1/H, s over 2π times the corner: of Butterworth's and of the
+    /// reverse Bessel polynomials, these over the frequency of half power.
+    fn denominator(&self) -> [f64; MOST_POLES] {
+        // 1/sin(π/8), and 2 + √2.
+        const SUM: f64 = 2.613_125_929_752_753;
+        const MIDDLE: f64 = 2.0 + SQRT_2;
+        match (self.order, self.bessel) {
+            (..2, _) => [1.0, 0.0, 0.0, 0.0],
+            (2, false) => [SQRT_2, 1.0, 0.0, 0.0],
+            (3, false) => [2.0, 2.0, 1.0, 0.0],
+            (_, false) => [SUM, MIDDLE, SUM, 1.0],
+            (2, true) => [1.361_654_128_716_130_3, 0.618_033_988_749_894_7, 0.0, 0.0],
+            (3, true) => [1.755_672_368_681_21, 1.232_954_186_460_276, 0.360_777_266_169_688, 0.0],
+            (_, true) => [
+                2.113_917_674_904_215,
+                1.915_134_829_831_048,
+                0.899_652_748_134_340,
+                0.190_179_184_555_734,
+            ],
+        }
     }
 }
 

@@ -134,7 +134,7 @@ pub fn measure(
     let slow = (&drifts[..], &tones[..]);
     let calibrated =
         |picks| with_drift(picks, &mut samples, slow, interval_s).calibrated(options.calibration);
-    let flight = picks.map(calibrated).map(Picks::flight);
+    let flight = picks.map(calibrated).and_then(Picks::in_order).map(Picks::flight);
     let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     let not_picked = none_reflected && found.reflected.is_some();
     found.flag(not_picked.then_some(QualityFlag::NotPicked(PulseKind::Reflected)));
@@ -295,6 +295,21 @@ impl Flight {
         [Some(self.incident_s), self.reflected_s]
     }
 
+    /// Height of a pulse over that of the incident one, unless it is that.
+    pub(crate) fn over_incident(&self, kind: PulseKind) -> Option<Estimate> {
+        match kind {
+            PulseKind::Incident => None,
+            PulseKind::Wall => Some(self.wall_over_incident),
+            PulseKind::Reflected => self.reflected_over_incident,
+        }
+    }
+
+    /// The part of that one's error which equal shots share.
+    pub(crate) fn shared_height(&self, kind: PulseKind) -> Option<f64> {
+        let pulse = self.picks.pulse(kind)?;
+        Some(self.over_incident(kind)?.value * pulse.systematic.height / pulse.height)
+    }
+
     pub(crate) fn without_return(&self) -> Self {
         let mut picks = self.picks;
         picks.reflected = None;
@@ -384,6 +399,16 @@ impl Picks {
         let other = &mut self.competing[PulseKind::Wall as usize];
         other.iter_mut().for_each(|other| other.picked.time_s -= calibration.skew_s);
         self
+    }
+
+    fn in_order(self) -> Result<Self> {
+        let times = PulseKind::ALL.map(|kind| self.pulse(kind).map(|pulse| (kind, pulse.time_s)));
+        let times: Vec<(PulseKind, f64)> = times.into_iter().flatten().collect();
+        let wrong = times.windows(2).find(|pair| pair[1].1 <= pair[0].1);
+        wrong.map_or(Ok(self), |pair| {
+            let [(before, from_s), (after, to_s)] = [pair[0], pair[1]];
+            Err(MeasureError::OutOfOrder(after, before, from_s - to_s))
+        })
     }
 
     /// A pulse's height in N, if its sensor is calibrated.

@@ -57,6 +57,9 @@ pub use self::{
     },
 };
 pub(crate) use self::{
-    filters::invert_high_pass, flight::mean_systematic, pick::pool, statistics::extremes,
+    filters::{MOST_POLES, invert_high_pass},
+    flight::mean_systematic,
+    pick::pool,
+    statistics::extremes,
     statistics::ratios_at_common,
 };

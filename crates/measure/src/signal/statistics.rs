@@ -81,6 +81,16 @@ pub struct Summary {
     pub chi_square: f64,
 }
 
+impl Summary {
+    /// Adds an error of all measurements to those of their means; of one alone it is in its own.
+    pub(crate) fn share(&mut self, error: f64) {
+        if self.count > 1 && error.is_finite() {
+            self.error = self.error.hypot(error);
+            self.weighted.sigma = self.weighted.sigma.hypot(error);
+        }
+    }
+}
+
 /// Summarises the finite ones of some measurements; `None` if there is none.
 ///
 /// The plain mean and its error describe what varies from shot to shot, the weighted ones what the

@@ -52,3 +52,13 @@ fn one_channel_has_no_skew_and_no_sensor_is_insensitive() {
         SensorCalibration { sensitivities_v_n: Some([0.012, 0.0]), ..SensorCalibration::default() };
     assert!(calibrated(Channels::Summed(&summed), dead).is_err());
 }
+
+#[test]
+fn a_skew_that_turns_pulses_about_leaves_no_time_of_flight() {
+    let pair = Scene::default().separate();
+    for skew_s in [-1e-3, 1e-3] {
+        let late = SensorCalibration { skew_s, ..SensorCalibration::default() };
+        let flight = calibrated(channels(&pair), late).unwrap().flight;
+        assert!(matches!(flight, Err(MeasureError::OutOfOrder(..))), "{flight:?}");
+    }
+}

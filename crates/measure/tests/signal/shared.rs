@@ -11,7 +11,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 fn under(superposition_s: f64) -> Systematic {
-    Systematic { superposition_s, shape_s: 0.0 }
+    Systematic { superposition_s, ..Systematic::default() }
 }
 
 #[test]
@@ -22,7 +22,7 @@ fn what_moves_all_shots_alike_stays_in_a_mean_and_noise_does_not() {
     assert_eq!(mean_systematic(&[]), 0.0);
     assert_eq!(without_systematic(5.0, pair(3.0, 0.0)), 4.0);
     assert_eq!(without_systematic(1.0, pair(3.0, 0.0)), 0.0);
-    let open = Systematic { superposition_s: -3.0, shape_s: 4.0 };
+    let open = Systematic { superposition_s: -3.0, shape_s: 4.0, height: 0.0 };
     assert_eq!(mean_systematic(&[[open, under(0.0)], [open, under(0.0)]]), 5.0);
     assert_eq!(without_systematic(13.0, [open, under(0.0)]), 12.0);
 }
@@ -148,4 +148,29 @@ fn errors_of_pulses_that_trail_do_not_leap_where_it_is_told() {
         assert!((0.8..1.4).contains(&leap), "{all:?}");
     }
     assert!(all[11].0 > 2.0 * all[0].0, "{all:?}");
+}
+
+#[test]
+fn ratios_of_a_summed_channel_are_without_what_lies_under_pulses_and_their_errors_hold_the_rest() {
+    let dry = Dry::load();
+    // Of both contacts, from the wall's pulse on: force that is left there, or the static one gone.
+    for level in [0.02_f64, -0.02] {
+        let sample = |i: usize| {
+            let t = i as f64 * 1e-6 - 500e-6;
+            let after = 0.5 * (1.0 + ((t - Dry::MAXIMA_S[1] - 200e-6) / 40e-6).tanh());
+            let [sensor, wall] = dry.separate(t);
+            [sensor + level.min(0.0) * after, wall + level * after]
+        };
+        let (sensor, wall): (Vec<f64>, Vec<f64>) =
+            (0..2900).map(sample).map(|[a, b]| (a, b)).unzip();
+        let sum: Vec<f64> = sensor.iter().zip(&wall).map(|(a, b)| a + b).collect();
+        let both = Channels::Separate { sensor: &sensor, wall: &wall };
+        let apart = measure(both, 1e-6, &SignalOptions::default()).unwrap().flight.unwrap();
+        let truth = apart.reflected_over_incident.unwrap().value;
+        let found = of(&sum).reflected_over_incident.unwrap();
+        let off = (found.value - truth).abs();
+        assert!(off < 0.6 * level.abs(), "{level}: {found:?} {truth}");
+        assert!(off < 1.96 * found.sigma && found.sigma < 0.02, "{level}: {found:?} {truth}");
+        assert_eq!(apart.picks.reflected.unwrap().systematic.height, 0.0);
+    }
 }

@@ -8,7 +8,6 @@ use crate::options::MeasureOptions as Arguments;
 use crate::program::{Counter, Failure, Folder, failure, print, require_free};
 use hertzchain_figures::Figure;
 use hertzchain_measure::records::{without_controls, write_whole};
-use hertzchain_measure::signal::Bandwidth;
 use hertzchain_measure::{
     Curves, Example, Measurement, Note, Options, Shot, laws_csv, ratios_csv, speeds_csv,
     write_shots,
@@ -75,10 +74,10 @@ fn list_notes(measured: &Measurement) {
 /// Notes whether maxima are those before the amplifier's low-pass, unless the user left it as it is
 /// by a corner of 0, or notes on files that state it say so.
 fn note_low_pass(measured: &Measurement, options: &Options, asked_hz: Option<f64>) {
-    match (options.measuring.bandwidth, asked_hz) {
-        (Some(Bandwidth { corner_hz, order }), _) => print::note(&format!(
-            "note: maxima are corrected for the amplifier's low-pass of {corner_hz} Hz, order {order}"
-        )),
+    match (options.measuring.bandwidth.and(measured.bandwidth), asked_hz) {
+        (Some(bandwidth), _) => {
+            print::note(&format!("note: maxima are corrected for the amplifier's {bandwidth}"));
+        }
         (None, None) if measured.bandwidth.is_none() => print::note(
             "note: times are not corrected for the amplifier's low-pass: its corner is not stated \
              (--low-pass, --rig)",

@@ -3,6 +3,7 @@
 use super::log_polynomial::{
     BellData, BellTop, DEGREE, EXPONENT, INEXACT, SHAPE, ShapePrior, WHOLE_WIDTH, is_adequate,
 };
+use crate::signal::MOST_POLES;
 use crate::signal::linear::{LinearSolution, LocalPolynomial, MOST, NormalEquations, powers};
 use std::array::from_fn;
 use std::f64::consts::LN_2;
@@ -63,7 +64,7 @@ impl CommonBell {
     }
 
     /// The maximum of such a shot's bell, with variances by noise, those by the change aside.
-    pub(super) fn top(&self, inverse: [f64; 2], off: f64) -> Option<BellTop> {
+    pub(super) fn top(&self, inverse: [f64; MOST_POLES], off: f64) -> Option<BellTop> {
         let bell = self.of_shot(off);
         let (noise, inexact) = (self.noise.0.hypot(self.noise.1), self.noise.1);
         let at = (bell.maximum()?, inverse);
@@ -79,7 +80,7 @@ impl CommonBell {
 
     /// The maximum of the mean bell, with variances by the change where a height's logarithm is 1
     /// above the mean.
-    pub(super) fn top_of_change(&self, inverse: [f64; 2]) -> Option<BellTop> {
+    pub(super) fn top_of_change(&self, inverse: [f64; MOST_POLES]) -> Option<BellTop> {
         let mut bell = self.of_shot(0.0);
         bell.solution.inverse = self.change.inverse;
         BellTop::new(&bell, (bell.maximum()?, inverse), &self.prior, (1.0, 0.0))
@@ -97,7 +98,7 @@ impl CommonBell {
         &self,
         normal: &NormalEquations,
         (off, share): (f64, f64),
-        inverse: [f64; 2],
+        inverse: [f64; MOST_POLES],
     ) -> Option<BellTop> {
         let own = with_prior(normal, &self.prior, share).solve()?;
         let mut bell = self.of_shot(off);

@@ -6,7 +6,7 @@ use super::{ChannelView, Picked};
 use crate::signal::linear::{
     LocalPolynomial, MOST, NormalEquations, Optimum, Row, levenberg_marquardt, powers,
 };
-use crate::signal::{Pulse, PulseKind};
+use crate::signal::{MOST_POLES, Pulse, PulseKind};
 use std::array::from_fn;
 use std::f64::consts::LN_2;
 
@@ -257,10 +257,11 @@ fn inexact(pulse: &Pulse) -> f64 {
 /// height times those of the logarithm.
 pub(super) struct BellTop {
     pub(super) u: f64,
-    /// Logarithm of the height, and its curvature.
+    /// Logarithm of the height behind the low-pass, of that before it over that, and the curvature.
     pub(super) log_height: f64,
+    pub(super) log_gain: f64,
     pub(super) curvature: f64,
-    /// Variances for unit noise: of the logarithm of the height, of its slope and curvature.
+    /// Variances for unit noise: of the logarithm of the height before the low-pass, of slope and curvature.
     pub(super) height_variance: f64,
     pub(super) slope_variance: f64,
     pub(super) curvature_variance: f64,
@@ -273,7 +274,7 @@ impl BellTop {
     /// bells leave of a pulse: it is the same in all of a pulse's shots.
     pub(super) fn new(
         fit: &LocalPolynomial,
-        (u, inverse): (f64, [f64; 2]),
+        (u, inverse): (f64, [f64; MOST_POLES]),
         prior: &ShapePrior,
         (noise, inexact): (f64, f64),
     ) -> Option<Self> {
@@ -289,8 +290,9 @@ impl BellTop {
         Some(Self {
             u: before,
             log_height: fit.at(u).value,
+            log_gain: slope.log_height(fit)? - fit.at(u).value,
             curvature: slope.derivative,
-            height_variance: variances.value,
+            height_variance: fit.solution.variance(&slope.height_row),
             slope_variance,
             curvature_variance: variances.curvature,
             open_variance: (open + of_inexact).min(slope_variance),
@@ -320,7 +322,8 @@ fn pick_at(
     let top = Top {
         noise: excess * modelled,
         height,
-        height_share: height * bell.height_variance.sqrt(),
+        gain: bell.log_gain.exp(),
+        height_share: bell.height_variance.sqrt(),
         slope_share: height * bell.slope_variance.sqrt(),
         curvature: height * bell.curvature,
         curvature_share: height * bell.curvature_variance.sqrt(),
@@ -479,31 +482,56 @@ impl BellData {
     }
 }
 
-/// Slope over value of x = y + a y′ + b y″, the signal before an amplifier's low-pass, at one place
-/// of a bell y = exp(Σ c_k u^k), in units of u; a and b are in samples.
+/// The signal x = y + a₁ y′ + a₂ y″ + … before an amplifier's low-pass, over y, at one place of a bell
+/// y = exp(Σ c_k u^k), in units of u; the coefficients a are in samples.
 struct Slope {
+    u: f64,
+    /// x over y.
+    gain: f64,
+    /// x′ over y.
     value: f64,
+    /// Its derivative.
     derivative: f64,
-    /// Its derivatives by the coefficients of the bell's logarithm.
+    /// Derivatives of the logarithm of x, and of x′ over y, by the coefficients of the bell's logarithm.
+    height_row: Row,
     row: Row,
 }
 
 impl Slope {
-    fn new(bell: &LocalPolynomial, [a, b]: [f64; 2], u: f64) -> Self {
-        let (a, b) = (a / bell.half, b / bell.half.powi(2));
+    fn new(bell: &LocalPolynomial, inverse: [f64; MOST_POLES], u: f64) -> Self {
         let rows = derivative_rows(u);
-        let [p, q, r, s] = rows.each_ref().map(|row| bell.solution.value(row));
-        // y′ = p y, y″ = (q + p²) y, y‴ = (r + 3 p q + p³) y.
-        let weights = [1.0 + 2.0 * a * p + 3.0 * b * (q + p * p), a + 3.0 * b * p, b];
+        let logs = rows.each_ref().map(|row| bell.solution.value(row));
+        // Leibniz: y⁽ⁿ⁺¹⁾ = Σ C(n, i) p⁽ⁱ⁾ y⁽ⁿ⁻ⁱ⁾ with p = y′/y, and so of u^j y, whose term i = 0 is
+        // that of a factor.
+        let mut y = [1.0; DERIVATIVES];
+        for n in 1..DERIVATIVES {
+            y[n] = (0..n).map(|i| choose(n - 1, i) * logs[i + 1] * y[n - 1 - i]).sum();
+        }
+        let weight =
+            |k: usize| k.checked_sub(1).map_or(1.0, |i| inverse[i] / bell.half.powi(k as i32));
+        let of = |order: usize| (0..=MOST_POLES).map(|k| weight(k) * y[k + order]).sum::<f64>();
+        let by = |order: usize, j: usize| -> f64 {
+            let term =
+                |n: usize| (1..=n).map(|i| choose(n, i) * rows[i][j] * y[n - i]).sum::<f64>();
+            (0..=MOST_POLES).map(|k| weight(k) * term(k + order)).sum()
+        };
+        let (gain, value) = (of(0), of(1));
         Self {
-            value: p + a * (q + p * p) + b * (r + 3.0 * p * q + p.powi(3)),
-            derivative: weights[0] * q + weights[1] * r + weights[2] * s,
-            row: from_fn(|k| (0..3).map(|i| weights[i] * rows[i][k]).sum()),
+            u,
+            gain,
+            value,
+            derivative: of(2) - logs[1] * value,
+            height_row: from_fn(|j| rows[0][j] + by(0, j) / gain),
+            row: from_fn(|j| by(1, j)),
         }
     }
 
+    fn log_height(&self, bell: &LocalPolynomial) -> Option<f64> {
+        (self.gain > 0.0).then(|| bell.at(self.u).value + self.gain.ln())
+    }
+
     /// Where it falls through 0, from the bell's own maximum on.
-    fn zero(bell: &LocalPolynomial, inverse: [f64; 2], from: f64) -> Option<f64> {
+    fn zero(bell: &LocalPolynomial, inverse: [f64; MOST_POLES], from: f64) -> Option<f64> {
         let mut u = from;
         for _ in 0..40 {
             let at = Self::new(bell, inverse, u);
@@ -520,13 +548,18 @@ impl Slope {
     }
 }
 
-fn derivative_rows(u: f64) -> [Row; 4] {
-    let mut rows = [[0.0; MOST]; 4];
-    for (order, row) in rows.iter_mut().enumerate() {
-        for (k, term) in row.iter_mut().enumerate().skip(order + 1) {
-            let falling: usize = (0..=order).map(|i| k - i).product();
-            *term = falling as f64 * u.powi((k - order - 1) as i32);
-        }
-    }
-    rows
+/// Derivatives of a bell that [`Slope`] needs, from the 0th on.
+const DERIVATIVES: usize = MOST_POLES + 3;
+
+fn derivative_rows(u: f64) -> [Row; DERIVATIVES] {
+    from_fn(|order| from_fn(|k| falling(k, order) * u.powi(k.saturating_sub(order) as i32)))
+}
+
+/// n (n − 1) … of so many factors.
+fn falling(n: usize, count: usize) -> f64 {
+    (0..count).map(|i| n.saturating_sub(i) as f64).product()
+}
+
+fn choose(n: usize, k: usize) -> f64 {
+    falling(n, k) / falling(k, k)
 }

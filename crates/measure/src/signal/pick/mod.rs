@@ -14,8 +14,8 @@ pub(crate) use {clipping::clipped_top, pooled::pool};
 
 use crate::error::{MeasureError, Result};
 use crate::signal::{
-    Bandwidth, Channels, DigitiserRange, Estimate, Found, Normalisation, Pulse, PulseKind,
-    SensorCalibration,
+    Bandwidth, Channels, DigitiserRange, Estimate, Found, MOST_POLES, Normalisation, Pulse,
+    PulseKind, SensorCalibration,
 };
 use correlation::Correlator;
 
@@ -79,8 +79,8 @@ pub struct Picked {
     pub misfit: Option<f64>,
 }
 
-/// Errors of a maximum's time that equal shots share, so that no mean over them makes them smaller.
-/// 0 of other methods.
+/// Errors of a maximum that equal shots share, so that no mean over them makes them smaller. Those of
+/// times are 0 of other methods.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Systematic {
     /// Shift in s, with its sign, by what lies under the pulse in a summed channel.
@@ -88,6 +88,8 @@ pub struct Systematic {
     /// Error in s by what the samples leave open of the pulse's shape, and of the interval between
     /// them.
     pub shape_s: f64,
+    /// Error of the height, in the samples' unit, by what lies under the pulse in a summed channel.
+    pub height: f64,
 }
 
 /// Another maximum of a pulse as picked, which could be the largest.
@@ -139,8 +141,12 @@ pub(crate) struct ChannelView<'a> {
     summed: bool,
     /// Sample of the wall's maximum, for the reflected pulse.
     wall: Option<usize>,
+    /// Sample of the incident maximum.
+    incident: usize,
+    /// How far below the baseline signals of both sensors come.
+    opened: f64,
     /// Coefficients of the inverse of the amplifier's low-pass; 0 where none is corrected.
-    inverse: [f64; 2],
+    inverse: [f64; MOST_POLES],
 }
 
 impl<'a> ChannelView<'a> {
@@ -155,7 +161,9 @@ impl<'a> ChannelView<'a> {
             range: None,
             summed: channels.is_summed(),
             wall: None,
-            inverse: [0.0; 2],
+            incident: 0,
+            opened: 0.0,
+            inverse: [0.0; MOST_POLES],
         }
     }
 
@@ -240,18 +248,27 @@ pub(crate) fn pick(
     let need = |pulse: &Option<Pulse>, kind| pulse.ok_or(MeasureError::Missing(kind));
     let incident = need(&found.incident, PulseKind::Incident)?;
     let wall = need(&found.wall, PulseKind::Wall)?;
-    let inverse = amplifier.map(|amplifier| amplifier.inverse(interval_s));
+    let widest = found.pulses().map(|pulse| pulse.width_samples).fold(0.0, f64::max);
+    let inverse = amplifier.map(|amplifier| amplifier.inverse(interval_s, widest));
     let inverse = inverse.transpose()?.filter(|_| *method == Method::Maximum);
     let view = |kind: PulseKind| ChannelView {
         range: ranges[usize::from(kind == PulseKind::Wall)],
         wall: (kind == PulseKind::Reflected).then_some(wall.at),
+        incident: incident.at,
         inverse: inverse.unwrap_or_default(),
         ..ChannelView::new(channels, kind, *found.normalisation(kind))
     };
-    let views = PulseKind::ALL.map(view);
+    let mut views = PulseKind::ALL.map(view);
+    let last = found.reflected.unwrap_or(wall);
+    let opened = views[last.kind as usize].opened_until(&last);
+    views.iter_mut().for_each(|view| view.opened = opened);
     let picker = Picker::new(method, &views[0], &incident)?;
     let pick = |pulse: &Pulse| {
-        let picked = picker.pick(&views[pulse.kind as usize], pulse)?;
+        let view = &views[pulse.kind as usize];
+        let picked = picker.pick(view, pulse)?;
+        let under = view.level_under(pulse, picked.time_s);
+        let has_offset = matches!(method, Method::MatchedShape { .. });
+        let picked = if has_offset { picked } else { picked.above(under) };
         Ok::<Picked, MeasureError>(picked.in_seconds(interval_s))
     };
     let reflected = found.reflected.and_then(|pulse| pick(&pulse).ok());
@@ -288,7 +305,7 @@ impl Picked {
     pub(crate) const UNKNOWN: Self = Self {
         time_s: f64::NAN,
         sigma_s: f64::NAN,
-        systematic: Systematic { superposition_s: 0.0, shape_s: 0.0 },
+        systematic: Systematic { superposition_s: 0.0, shape_s: 0.0, height: 0.0 },
         height: f64::NAN,
         height_sigma: f64::NAN,
         width_s: f64::NAN,
@@ -298,7 +315,8 @@ impl Picked {
 
     /// The same with a time of another method, of no systematic error.
     pub(crate) fn by_fit(self, time_s: f64, sigma_s: f64, misfit: Option<f64>) -> Self {
-        Self { time_s, sigma_s, systematic: Systematic::default(), misfit, ..self }
+        let systematic = Systematic { height: self.systematic.height, ..Systematic::default() };
+        Self { time_s, sigma_s, systematic, misfit, ..self }
     }
 
     fn in_seconds(self, interval_s: f64) -> Self {
@@ -308,6 +326,7 @@ impl Picked {
             systematic: Systematic {
                 superposition_s: self.systematic.superposition_s * interval_s,
                 shape_s: self.systematic.shape_s * interval_s,
+                ..self.systematic
             },
             width_s: self.width_s * interval_s,
             ..self

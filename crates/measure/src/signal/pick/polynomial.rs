@@ -17,6 +17,8 @@ pub(super) struct Top {
     /// Noise, with residuals beyond it.
     pub(super) noise: f64,
     pub(super) height: f64,
+    /// Height before an amplifier's low-pass over that, and deviation of its logarithm.
+    pub(super) gain: f64,
     pub(super) height_share: f64,
     pub(super) slope_share: f64,
     pub(super) curvature: f64,
@@ -65,9 +67,13 @@ impl Top {
             time_s: time + likely,
             // Of a parabola heights differ by a deviation at two deviations of its maximum.
             sigma_s: by_noise(self.slope_share).max(0.5 * self.reach * fit.half).hypot(under),
-            systematic: Systematic { superposition_s: under, shape_s: by_noise(self.open_share) },
-            height: self.height,
-            height_sigma: noise * self.height_share,
+            systematic: Systematic {
+                superposition_s: under,
+                shape_s: by_noise(self.open_share),
+                height: 0.0,
+            },
+            height: self.gain * self.height,
+            height_sigma: noise * self.gain * self.height * self.height_share,
             width_s: pulse.width_samples,
             signal_to_noise: self.height / view.noise(pulse),
             misfit: view.misfit(pulse, fit.residual),
@@ -90,7 +96,7 @@ pub(super) fn pick_in_noise(view: &ChannelView<'_>, pulse: &Pulse) -> Result<Pic
         .ok_or(MeasureError::NoPick(pulse.kind, "maximum"))?;
     let picked = pick_at(view, pulse, &fit, u);
     // Of all that a low-pass does, the delay of a slow signal.
-    let [delay, _] = view.inverse;
+    let [delay, ..] = view.inverse;
     let time_s = picked.time_s - delay;
     Ok(Picked { time_s, ..picked })
 }
@@ -100,7 +106,8 @@ fn pick_at(view: &ChannelView<'_>, pulse: &Pulse, fit: &LocalPolynomial, u: f64)
     let top = Top {
         noise: view.broad_noise(pulse),
         height: at.value,
-        height_share: variances.value.sqrt(),
+        gain: 1.0,
+        height_share: variances.value.sqrt() / at.value,
         slope_share: variances.slope.sqrt(),
         curvature: at.curvature,
         curvature_share: variances.curvature.sqrt(),

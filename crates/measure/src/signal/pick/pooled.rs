@@ -10,7 +10,7 @@ use super::common_bell::CommonBell;
 use super::log_polynomial::{BellTop, NARROWER, ShapePrior, half_width};
 use super::{ChannelView, Picked, Systematic};
 use crate::signal::linear::{MOST, NormalEquations, powers};
-use crate::signal::{Pulse, median};
+use crate::signal::{Estimate, MOST_POLES, Pulse, median};
 
 /// Samples that are kept on either side of a pulse, in halves of a whole pulse's fit.
 const MARGIN: f64 = 1.6;
@@ -44,9 +44,10 @@ pub struct PulseSamples {
     /// Of single samples, and of averages over many.
     noise: f64,
     broad_noise: f64,
-    inverse: [f64; 2],
+    inverse: [f64; MOST_POLES],
     /// Falls a sample under the pulse: their deviation, with its sign, and the likely one.
     falls: [f64; 2],
+    under: Estimate,
     interval_s: f64,
     /// Error in s of its maximum's time by a fitted baseline.
     pub(crate) of_drift_s: f64,
@@ -71,6 +72,7 @@ impl PulseSamples {
             broad_noise: view.broad_noise(pulse),
             inverse: view.inverse,
             falls: [view.fall_under(pulse, time), view.likely_fall(pulse, time)],
+            under: view.level_under(pulse, time),
             interval_s,
             of_drift_s: 0.0,
         })
@@ -306,19 +308,23 @@ impl Pool {
         let [under, likely] = one.falls.map(moved_by);
         let open = self.shape.hypot(self.change * place.off);
         let by_noise = place.variances[0].sqrt().hypot(open);
+        // What a low-pass takes of a top goes as its curvature.
+        let before = height * (top.log_gain / place.width.powi(2)).exp();
         Picked {
             time_s: one.interval_s * (place.time + half * top.u + likely),
             sigma_s: (one.interval_s * by_noise.hypot(under)).hypot(one.of_drift_s),
             systematic: Systematic {
                 superposition_s: -under * one.interval_s,
                 shape_s: self.shape * one.interval_s,
+                height: 0.0,
             },
-            height,
-            height_sigma: height * (place.variances[1] + top.height_variance).sqrt(),
+            height: before,
+            height_sigma: before * (place.variances[1] + top.height_variance).sqrt(),
             signal_to_noise: height / one.noise,
             misfit: (one.noise > 0.0).then_some((place.squares / place.freedom).sqrt()),
             ..*own
         }
+        .above(one.under)
     }
 }
 

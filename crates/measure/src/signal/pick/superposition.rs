@@ -1,8 +1,8 @@
 //! What may lie under a pulse in a channel that sums both sensors.
 
-use super::ChannelView;
-use crate::signal::Pulse;
+use super::{ChannelView, Picked};
 use crate::signal::statistics::mean;
+use crate::signal::{Estimate, Pulse, PulseKind};
 
 /// Half widths of the rise from a pulse's maximum to where it has not begun, over two.
 const FOOT: f64 = 1.3;
@@ -19,8 +19,62 @@ const DEVIATION: f64 = 0.16;
 const BEFORE: f64 = 0.3;
 /// Largest force of the wall, over a reflected pulse, that comes back before it.
 const RISEN: f64 = 0.015;
+/// What is under a pulse at its maximum over what is known of it.
+struct Under {
+    /// Over the least that the other sensor's signal may have come to before the pulse, and over how far
+    /// below the baseline signals come where contacts have opened.
+    likely: [f64; 2],
+    /// Standard deviations over the last of that signal, over that depth and over the pulse's height.
+    deviation: [f64; 3],
+}
+
+/// Of 500 chains at random, dry and wet, pushed or not, 95 to 97 % of what is under pulses is within
+/// 1.96 deviations.
+const UNDER_WALL: Under = Under { likely: [0.9, 0.0], deviation: [0.5, 0.45, 1e-3] };
+const UNDER_REFLECTED: Under = Under { likely: [0.72, -0.5], deviation: [0.25, 0.45, 8.5e-3] };
+/// As [`FOOT`], of the level before the wall's pulse: between both the pulse has begun.
+const FAR_FOOT: f64 = 1.6;
+/// Deviations by which noise makes the least of many means.
+const OF_MANY: f64 = 2.5;
 
 impl ChannelView<'_> {
+    /// What lies under a pulse at its maximum: of the wall's the sensor bead's signal, of the reflected
+    /// one the wall's. A contact that has opened is below the baseline by what it held at rest.
+    pub(super) fn level_under(&self, pulse: &Pulse, time: f64) -> Estimate {
+        let steep = pulse.steep_width_samples();
+        let foot = self.foot(pulse, time).filter(|_| pulse.kind != PulseKind::Incident);
+        let Some((foot, length)) = foot else {
+            return Estimate { value: 0.0, sigma: 0.0 };
+        };
+        let (least, last, Under { likely, deviation }) = match self.wall {
+            Some(wall) => {
+                let last = self.means_before(foot, length)[2];
+                let least = self.least_mean(wall as f64, foot, steep).min(last).max(0.0);
+                (least, least, UNDER_REFLECTED)
+            }
+            None => {
+                let end = time - 2.0 * FAR_FOOT * pulse.sides_samples.0;
+                let last = self.beyond_noise(end - length, end);
+                let least = self.least_mean(self.incident as f64, end, steep).min(last).max(0.0);
+                (least, last, UNDER_WALL)
+            }
+        };
+        let known = [last, self.opened, pulse.height];
+        let sigmas = known.iter().zip(deviation).map(|(known, share)| known * share);
+        Estimate {
+            value: likely[0] * least + likely[1] * self.opened,
+            sigma: sigmas.fold(0.0, f64::hypot),
+        }
+    }
+
+    /// How far below the baseline means come up to some widths after the last pulse.
+    pub(super) fn opened_until(&self, last: &Pulse) -> f64 {
+        let end = (last.at as f64 + AFTER * last.width_samples).min(self.samples.len() as f64);
+        let length = last.steep_width_samples();
+        let by_noise = OF_MANY * self.normalisation.baseline.broad_noise() / length.sqrt();
+        (-self.least_mean(0.0, end, length) - by_noise).max(0.0)
+    }
+
     /// Fall, a sample, that is likely under a reflected pulse at its maximum; 0 under others.
     pub(super) fn likely_fall(&self, pulse: &Pulse, time: f64) -> f64 {
         match self.wall {
@@ -123,6 +177,16 @@ impl ChannelView<'_> {
     fn mean(&self, from: f64, to: f64) -> (f64, f64) {
         let (_, heights) = self.window(from, to);
         (mean(&heights), heights.len() as f64)
+    }
+}
+
+impl Picked {
+    /// The same without what is likely under it; its error is the same in equal shots.
+    pub(super) fn above(mut self, under: Estimate) -> Self {
+        self.height -= under.value;
+        self.height_sigma = self.height_sigma.hypot(under.sigma);
+        self.systematic.height = under.sigma;
+        self
     }
 }
 
