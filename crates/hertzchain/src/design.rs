@@ -7,7 +7,7 @@ use crate::options::DesignOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fit, Fitting,
-    Goodness, Identifiability, Kind, Problem, fit, titled, ways, wrong_speed,
+    Goodness, Identifiability, Kind, Observable, Problem, fit, titled, ways, wrong_speed,
 };
 use hertzchain_sim::parse_speeds;
 use serde_json::{Value, json};
@@ -18,6 +18,8 @@ pub struct DesignResult {
     pub goodness: Goodness,
     /// What could be measured.
     pub candidates: Vec<Candidate>,
+    /// Which errors they are expected to have.
+    pub errors: ExpectedErrors,
     /// What each would determine.
     pub design: Design,
     /// What is tightened, by name.
@@ -148,6 +150,7 @@ pub(crate) fn run_design(
         goodness: Goodness::new(problem, &fit),
         advice,
         candidates,
+        errors,
         design: found,
         names,
         units,
@@ -231,11 +234,28 @@ pub fn json(problem: &CurveProblem, run_design: &DesignResult) -> Value {
         "parameters": run_design.names,
         "units": run_design.units,
         "standard_errors_now": found.before.iter().map(|sd| finite(*sd)).collect::<Vec<_>>(),
+        "expected_errors": errors_json(&run_design.errors),
         "ranked": found.ranked.iter().map(one).collect::<Value>(),
         "series": found.greedy.iter().map(one).collect::<Value>(),
         "undetermined": run_design.undetermined,
         "not_identifiable": run_design.unidentifiable(problem),
     })
+}
+
+/// By column, standard errors of what could be measured, and the degrees of freedom that these have.
+fn errors_json(errors: &ExpectedErrors) -> Value {
+    let one = |error: f64, freedom: f64| {
+        let freedom = freedom.is_finite().then_some(freedom);
+        json!({ "error": error, "degrees_of_freedom": freedom })
+    };
+    let pairs = errors.values.into_iter().zip(errors.freedom.values);
+    let named = Observable::ALL.into_iter().zip(pairs);
+    let mut all = json!({ "speed_m_s": one(errors.speed_m_s, errors.freedom.speed) });
+    for (of, (error, freedom)) in named {
+        all[of.column()] = one(error, freedom);
+    }
+    all["tof_correlation"] = errors.correlation.into();
+    all
 }
 
 /// Every table, as views of what [`json`] returns: files' names and what stands in them.

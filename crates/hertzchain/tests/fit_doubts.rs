@@ -131,3 +131,30 @@ fn a_fit_with_as_many_numbers_as_parameters_reports_no_degrees_of_freedom() {
     assert!(!text.contains("runs") && !text.contains("largest residual"), "{text}");
     assert!(json(&[&fit[..], &["--json"]].concat())["runs"].is_null());
 }
+
+/// Times of the dry chain at its two slowest speeds, with errors that leave B open.
+const TWO: &str = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error,tof_reflected_s,\
+                   tof_reflected_s_error,tof_correlation\n\
+                   0.1183961371494931,0.002,0.000992561614763589,3e-7,0.0010254300323363174,5e-7,-0.6\n\
+                   0.15233724181052974,0.002,0.0009445795708972756,3e-7,0.0009788467304079284,5e-7,-0.6\n";
+
+#[test]
+fn a_fit_that_ends_next_to_where_the_model_fails_says_so_in_sizes() {
+    let data = file(&folder("edge"), "two.csv", TWO);
+    let fit = |bounds: &str| {
+        let found = run(&["fit", &data, "-p", "dry", "--free", "eta,B", "--bounds", bounds]);
+        String::from_utf8(found.stdout).unwrap()
+    };
+    let text = fit("B=-1000:1000");
+    let warning = "warning: the model fails next to this B: at 0.11";
+    assert!(text.contains(warning), "{text}");
+    // One scale for the change and for how well the combination is known: B starts at 77.
+    assert!(text.contains("B up 1.00 % of 77 kg s/m^2"), "{text}");
+    // One end is left out, or infinite.
+    for bounds in ["B=0:", "B=0:inf", "B=-inf:1e6", "B=:"] {
+        let text = fit(bounds);
+        assert!(text.contains("at its bound") && !text.contains("the model fails"), "{text}");
+    }
+    let message = refused(&["fit", &data, "-p", "dry", "--free", "B", "--bounds", "B=0"]);
+    assert!(message.contains("expected FROM:TO"), "{message}");
+}

@@ -45,6 +45,10 @@ fn a_push_that_the_fit_advises_determines_what_one_table_leaves_open() {
         assert!(sd(&alone, at).is_none_or(|before| error < 0.5 * before), "{alone}");
     }
     assert_eq!(both["tables"][1]["model"], pushed.as_str());
+    // Above the tables stands what all of them have together.
+    assert_eq!(both["data"]["values"], 12);
+    assert_eq!(both["data"]["file"], format!("{one}, {other}"));
+    assert_eq!(both["model"], format!("{bare}, {pushed}"));
     for name in ["fit.png", "fit-2.png"] {
         assert!(out.join(name).exists(), "{name}");
     }

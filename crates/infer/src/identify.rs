@@ -2,7 +2,8 @@
 
 use crate::least_squares::{EXTRAPOLATED, ROUNDING};
 use crate::linear::{Svd, combine, norm, svd};
-use crate::{Binding, Fit, Jacobian, Parameter, Prior};
+use crate::problem::short;
+use crate::{Binding, Fit, Jacobian, Parameter};
 
 /// Singular values of the Jacobian of the data, each parameter in units of its size, which is its
 /// scale, or its value at the best fit where that is larger. Priors do not enter.
@@ -23,7 +24,7 @@ pub struct Identifiability {
 /// A combination of parameters that hardly changes the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnidentifiableDirection {
-    /// Change of each parameter, in its unit: the largest is one percent of its value.
+    /// Change of each parameter, in its unit: the largest is one percent of its size.
     pub change: Vec<f64>,
     /// Change of each residual of the data thereby, in σ.
     pub effect: Vec<f64>,
@@ -211,7 +212,7 @@ fn unidentifiable(
     (direction, standard_error): (&[f64], f64),
     label: &impl Fn(usize) -> String,
 ) -> UnidentifiableDirection {
-    let change = of_one_percent(parameters, fit, direction);
+    let change = of_one_percent(parameters, direction);
     let mut effect = combine(&fit.jacobian.columns, &change);
     effect.truncate(fit.jacobian.data_rows);
     let numbered = effect.iter().map(|x| x.abs()).enumerate();
@@ -228,38 +229,33 @@ fn unidentifiable(
     UnidentifiableDirection { change, effect, standard_error, words }
 }
 
-/// What percents of a parameter are of: its value, or its size where that is 0 or has a prior.
-fn whole(parameters: &[Parameter], fit: &Fit, k: usize) -> f64 {
-    match fit.point[k].abs() {
-        size if size > 0.0 && parameters[k].prior == Prior::Flat => size,
-        size => parameters[k].scale.max(size),
-    }
-}
-
 /// A direction, in units of sizes, as changes of parameters in words.
 pub(crate) fn in_words(sized: &[Parameter], fit: &Fit, direction: &[f64]) -> String {
-    changes(sized, fit, &of_one_percent(sized, fit, direction))
+    changes(sized, fit, &of_one_percent(sized, direction))
 }
 
 /// A direction, in units of sizes, as changes of parameters in their units: the largest is one
-/// percent upward of its value.
-fn of_one_percent(sized: &[Parameter], fit: &Fit, direction: &[f64]) -> Vec<f64> {
-    let change: Vec<f64> = direction.iter().zip(sized).map(|(d, p)| d * p.scale).collect();
-    let share = |k: usize| change[k] / whole(sized, fit, k);
-    let largest = (0..change.len()).max_by(|i, j| share(*i).abs().total_cmp(&share(*j).abs()));
-    let size = largest.map_or(0.0, |k| 0.01 / share(k));
-    change.iter().map(|x| x * size).collect()
+/// percent upward of its size.
+fn of_one_percent(sized: &[Parameter], direction: &[f64]) -> Vec<f64> {
+    let largest = direction.iter().max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let percent = largest.map_or(0.0, |largest| 0.01 / largest);
+    direction.iter().zip(sized).map(|(d, p)| percent * d * p.scale).collect()
 }
 
-/// Changes in percent, the largest first.
+/// Changes in percent of sizes, the largest first; a size that is far from the value is named.
 fn changes(parameters: &[Parameter], fit: &Fit, change: &[f64]) -> String {
-    let percent = |k: usize| 100.0 * change[k] / whole(parameters, fit, k);
+    let percent = |k: usize| 100.0 * change[k] / parameters[k].scale;
     let mut order: Vec<usize> = (0..change.len()).collect();
     order.retain(|k| percent(*k).abs() >= NAMED);
     order.sort_by(|i, j| percent(*j).abs().total_cmp(&percent(*i).abs()));
     let part = |k: &usize| {
         let way = if change[*k] > 0.0 { "up" } else { "down" };
-        format!("{} {way} {:.2} %", parameters[*k].name, percent(*k).abs())
+        let Parameter { name, unit, scale, .. } = &parameters[*k];
+        let of = match fit.point[*k].abs() < 0.5 * scale {
+            true => format!(" of {} {unit}", short(*scale)).trim_end().to_owned(),
+            false => String::new(),
+        };
+        format!("{name} {way} {:.2} %{of}", percent(*k).abs())
     };
     order.iter().map(part).collect::<Vec<_>>().join(" with ")
 }

@@ -63,7 +63,7 @@ impl fmt::Display for Prior {
 }
 
 /// A number without the last digits that conversions of units and logarithms leave.
-fn short(value: f64) -> f64 {
+pub(crate) fn short(value: f64) -> f64 {
     format!("{value:.9e}").parse().unwrap_or(value)
 }
 

@@ -2,7 +2,8 @@
 
 use hertzchain_experiment::{Experiment, preset};
 use hertzchain_infer::{
-    CurveProblem, Data, FreeNumber, FreeNumbers, Model, Problem, Selection, Speeds,
+    Choices, Covariance, CurveProblem, Data, ExpectedErrors, Fit, Fitting, FreeNumber, FreeNumbers,
+    Model, Observable, Problem, Selection, Speeds, design, fit, ways,
 };
 use hertzchain_sim::{Plan, shoot};
 
@@ -149,4 +150,62 @@ fn times_of_flight_tell_speeds_in_another_unit() {
         let problem = crate::common::problem(&model, data);
         assert_eq!(problem.curves[0].other_unit_of_speed(&[3.2e4]), unit);
     }
+}
+
+/// Exact times of the dry chain, incident to 0.1 µs and reflected to 3 µs, both of six shots; with
+/// an incident time more at one speed.
+fn rough_returns(model: &Model, more: Option<f64>) -> Data {
+    let speeds: Vec<f64> = SPEEDS_M_S.into_iter().chain(more).collect();
+    let curve = model.curves(&[vec![3.2e4, 77.0]], &Speeds::of_rows(&speeds)).remove(0).unwrap();
+    let mut text = "speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_error,tof_reflected_s,\
+                    tof_reflected_s_error,tof_correlation,shots\n"
+        .to_owned();
+    for (at, (speed, row)) in speeds.iter().zip(&curve).enumerate() {
+        let reflected = row[1].filter(|_| at < SPEEDS_M_S.len()).map(|time| time.to_string());
+        let reflected = reflected.unwrap_or_default();
+        text += &format!("{speed},1e-4,{},1e-7,{reflected},3e-6,0,6\n", row[0].unwrap());
+    }
+    Data::parse("made", &text, &Selection::default()).unwrap()
+}
+
+#[test]
+fn a_design_promises_what_a_fit_with_the_measurement_has() {
+    let dry = preset("dry").unwrap();
+    let model = model(&dry, &["eta", "B"]);
+    let fitted = |data: Data| -> (CurveProblem, Fit) {
+        let problem = problem(&model, data);
+        let best = fit(&problem, &Fitting::default()).unwrap();
+        (problem, best)
+    };
+    let (problem, best) = fitted(rough_returns(&model, None));
+    let errors = ExpectedErrors::like(problem.data());
+    assert_eq!(errors.values, [1e-7, 3e-6, 0.005, 0.005]);
+    assert_eq!((errors.freedom.speed, errors.freedom.values[0]), (5.0, 5.0));
+    // What has not been measured has the errors of the other time.
+    let alone = ExpectedErrors::like(&problem.data().only(&[Observable::Incident]));
+    assert_eq!(alone.values[..2], [1e-7, 1e-7]);
+    let incident = &ways(&dry, &Choices::default()).unwrap()[..1];
+    let candidates = problem.candidates(&best, incident, &[1.0], &errors).unwrap();
+    let promised = design(problem.parameters(), &best, &candidates, &[0, 1], 1).unwrap();
+    let (with, best) = fitted(rough_returns(&model, Some(1.0)));
+    let measured = Covariance::new(with.parameters(), &best);
+    for (promised, sd) in promised.ranked[0].after.iter().zip(&measured.sd) {
+        // Slopes by the speed come from other neighbours, and noise of the model.
+        assert!((promised / sd - 1.0).abs() < 0.02, "{promised} {sd}");
+    }
+    assert!(promised.ranked[0].gain > 0.1, "{promised:?}");
+}
+
+#[test]
+fn candidates_at_close_speeds_have_names_of_their_own() {
+    let dry = preset("dry").unwrap();
+    let problem = problem(&model(&dry, &["eta"]), rough_returns(&model(&dry, &["eta", "B"]), None));
+    let best = fit(&problem, &Fitting::default()).unwrap();
+    let errors = ExpectedErrors::like(problem.data());
+    let incident = &ways(&dry, &Choices::default()).unwrap()[..1];
+    let close = [0.1001, 0.1004, 0.100_42];
+    let found = problem.candidates(&best, incident, &close, &errors).unwrap();
+    let names: Vec<&str> = found.iter().map(|one| one.name.as_str()).collect();
+    let expected = ["0.1001 m/s: incident", "0.1004 m/s: incident", "0.10042 m/s: incident"];
+    assert_eq!(names, expected);
 }

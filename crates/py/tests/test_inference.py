@@ -95,6 +95,22 @@ def test_tables_of_pandas_and_sweeps_are_data(dry_data):
     assert next(iter(exact.parameters.values())).value == pytest.approx(77.0, rel=1e-2)
 
 
+def test_cases_are_named_by_numbers_as_the_table_has_them(dry_data, tmp_path):
+    import pandas as pd
+
+    cases = pd.DataFrame({**dry_data, "case": [1] * 3 + [2] * 3})
+    cases.to_csv(tmp_path / "cases.csv", index=False)
+    for data in (cases, tmp_path / "cases.csv"):
+        found = [hc.fit(data, "dry", free="B", case=case) for case in (1, "1")]
+        assert [one.details["data"]["values"] for one in found] == [6, 6]
+    assert hc.fit(dry_data, "dry", free="eta,B", bounds={"B": (0, None)}).converged
+
+
+def test_a_joint_fit_says_how_many_values_of_which_models_it_has(dry_data):
+    both = hc.fit(dry_data, "dry", free="eta", also=[(dry_data, "hertz-viscoelastic")])
+    assert repr(both).startswith("Fit of dry.toml, hertz-viscoelastic.toml to 24 values in 2 tables")
+
+
 def test_what_is_masked_was_not_measured(dry_data):
     reflected = np.ma.masked_greater(dry_data["tof_reflected_s"], np.sort(dry_data["tof_reflected_s"])[-3])
     seen = hc.fit({**dry_data, "tof_reflected_s": reflected}, free="B")

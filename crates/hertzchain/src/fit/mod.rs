@@ -189,10 +189,13 @@ impl FitResult {
 /// Starts of a fit whose first came to a minimum that the data reject, and most free
 /// parameters for which they are tried.
 const UNASKED: usize = 8;
+/// Half of the difference of χ² of minima that fit as well as each other.
+const HARDLY_BETTER: f64 = 4.5;
 const FEW: usize = 8;
 
 /// The best fit, as asked; where chance can't be why the data are so far from it, the best of
-/// several starts: a minimum may be another than the data's.
+/// several starts: a minimum may be another than the data's. One that is hardly better than the
+/// first is none to prefer: the first is what the model's own numbers lead to.
 fn best_of_starts(problem: &dyn Problem, nuisances: usize, how: &Fitting) -> Result<Fit, Failure> {
     let found = least_squares(problem, how);
     wanted()?;
@@ -204,7 +207,13 @@ fn best_of_starts(problem: &dyn Problem, nuisances: usize, how: &Fitting) -> Res
     let starts = UNASKED;
     let found = least_squares(problem, &Fitting { starts, ..*how });
     wanted()?;
-    Ok(found.unwrap_or(first))
+    Ok(match found {
+        Ok(found) if first.ending.converged() && first.cost - found.cost < HARDLY_BETTER => {
+            Fit { starts: found.starts, ..first }
+        }
+        Ok(found) => found,
+        Err(_) => first,
+    })
 }
 
 /// What was done beyond what was asked for, so that a fit found the minimum, one sentence each:

@@ -7,7 +7,9 @@ use crate::inference::{
     assumed, held_loads, references_json, unit_changes, warnings_json, widened,
 };
 use crate::options::FitOptions as Arguments;
-use hertzchain_infer::{Advice, End, Observable, Parameter, Profile, Prospect};
+use hertzchain_infer::{
+    Advice, Data, End, MeasuredCurve, Observable, Parameter, Profile, Prospect,
+};
 use serde_json::{Value, json};
 
 /// Everything, to be read by programs and to be repeated.
@@ -35,6 +37,16 @@ pub fn json(fit_result: &FitResult, arguments: &Arguments) -> Value {
     if tables.len() > 1 {
         let all = tables.iter().filter_map(|table| assumed(&table.curve.data, &arguments.measured));
         own["assumed"] = all.reduce(|all, one| format!("{all}; {one}")).into();
+        let named = |name: fn(&MeasuredCurve) -> &str| {
+            tables.iter().map(|table| name(table.curve)).collect::<Vec<_>>().join(", ")
+        };
+        let sum = |count: fn(&Data) -> usize| {
+            tables.iter().map(|of| count(&of.curve.data)).sum::<usize>()
+        };
+        own["model"] = named(|curve| curve.model.experiment.name()).into();
+        own["data"]["file"] = named(|curve| &curve.data.file).into();
+        own["data"]["rows"] = sum(|data| data.rows.len()).into();
+        own["data"]["values"] = sum(Data::value_count).into();
         own["tables"] = tables.iter().map(table).collect();
     }
     joined(own, inferred(&fit_result.inferred, arguments))
@@ -100,6 +112,9 @@ pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
         })).collect::<Value>(),
         "other_minima": fit_result.other_minima().iter().map(|(start, starts)| json!({
             "point": start.point, "chi_square_rise": 2.0 * (start.cost - fit.cost), "starts": starts,
+        })).collect::<Value>(),
+        "model_fails_beside": fit.jacobian.failing.iter().map(|(at, why)| json!({
+            "name": fit_result.parameters[*at].name, "why": why.to_string(),
         })).collect::<Value>(),
         "evaluations": fit.evaluations,
         "cost": fit.cost,

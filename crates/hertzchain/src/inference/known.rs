@@ -23,8 +23,8 @@ pub(super) fn apply(freed: &Freed, parameters: &mut [Parameter]) -> Result<(), F
     })?;
     each("--bounds", &freed.bounds, parameters, |parameter, text| {
         let parts = text.split_once(':').ok_or("expected FROM:TO")?;
-        parameter.lower = number(parameter, parts.0)?;
-        parameter.upper = number(parameter, parts.1)?;
+        parameter.lower = bound(parameter, parts.0, parameter.lower)?;
+        parameter.upper = bound(parameter, parts.1, parameter.upper)?;
         Ok(())
     })?;
     each("--prior", &freed.prior, parameters, |parameter, text| {
@@ -102,6 +102,14 @@ fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
             text.trim(),
             if parameter.unit.is_empty() { "no unit" } else { &parameter.unit }
         )),
+    }
+}
+
+/// A bound; one that is left out, or infinite, stays what it is without the option.
+fn bound(parameter: &Parameter, text: &str, own: f64) -> Result<f64, String> {
+    match text.trim() {
+        "" | "inf" | "-inf" => Ok(own),
+        text => number(parameter, text),
     }
 }
 

@@ -171,8 +171,8 @@ fn uncorrelated(data: &Data) -> Option<String> {
     let which = which(data, &data.lines_without_correlation())?;
     Some(format!(
         "{}, {which}: the errors of incident and reflected times are taken as independent. Both times share the wall's \
-         pick, so they usually are not: add a column `tof_correlation`, as `hertzchain measure` writes it (0 for \
-         independent errors)",
+         pick, so they usually are not: add a column `tof_correlation`, or `tof_at_mean_speed_correlation` of times at \
+         the mean speed, as `hertzchain measure` writes them (0 for independent errors)",
         data.file
     ))
 }

@@ -35,6 +35,7 @@ use clap::{Arg, ArgAction, Args, Command};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use std::any::TypeId;
 
 /// Returns the options of a verb from words, as a command line has them.
 ///
@@ -78,7 +79,9 @@ pub fn from_json<A: Args + DeserializeOwned>(
     for (name, value) in &mut options {
         let option = command.get_arguments().find(|arg| arg.get_id() == name.as_str());
         let unknown = || Failure::User(format!("{verb} has no option `{name}`"));
-        listed(option.ok_or_else(unknown)?, value);
+        let option = option.ok_or_else(unknown)?;
+        listed(option, value);
+        named(option, value);
     }
     serde_json::from_value(Value::Object(options.clone())).map_err(|error| {
         // Flattened structs lose the key of a wrong value: each is tried by itself.
@@ -104,6 +107,18 @@ fn listed(option: &Arg, value: &mut Value) {
         (Some(text), Some(between)) => text.split(between).map(str::trim).collect(),
         _ => json!([value]),
     };
+}
+
+/// Makes numbers texts where an option has names: a case can be called 1.
+fn named(option: &Arg, value: &mut Value) {
+    if option.get_value_parser().type_id() != TypeId::of::<String>() {
+        return;
+    }
+    match value {
+        Value::Array(all) => all.iter_mut().for_each(|one| named(option, one)),
+        Value::Number(number) => *value = number.to_string().into(),
+        _ => {}
+    }
 }
 
 /// Options as a result file records them: without places of files, threads and other things that no

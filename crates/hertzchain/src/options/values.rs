@@ -366,7 +366,7 @@ pub(super) mod pairs {
     #[serde(untagged)]
     enum Entry {
         One(Text),
-        Two([Text; 2]),
+        Two([Option<Text>; 2]),
     }
 
     pub(in super::super) fn serialize<T: Display, S: Serializer>(
@@ -391,7 +391,11 @@ pub(super) mod pairs {
         let entries = BTreeMap::<String, Entry>::deserialize(source)?.into_iter();
         let pair = |(name, entry)| match entry {
             Entry::One(one) => format!("{name}={one}").parse(),
-            Entry::Two([first, second]) => format!("{name}={first}{sign}{second}").parse(),
+            Entry::Two(two) => {
+                let [first, second] =
+                    two.map(|one| one.map_or(String::new(), |one| one.to_string()));
+                format!("{name}={first}{sign}{second}").parse()
+            }
         };
         entries.map(pair).collect::<Result<_, String>>().map_err(D::Error::custom)
     }

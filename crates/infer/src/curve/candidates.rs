@@ -3,7 +3,7 @@
 use super::joint::CurveProblem;
 use super::model::{Model, Speeds};
 use crate::data::{Data, DataRow, Freedom, Observable};
-use crate::free::Form;
+use crate::free::{Form, apart};
 use crate::least_squares::{JUMPING, jacobian_at};
 use crate::linear::norm;
 use crate::{Candidate, Fit, InferError, ModelError};
@@ -52,12 +52,12 @@ pub struct Way {
 pub struct ExpectedErrors {
     /// Of speeds in m/s.
     pub speed_m_s: f64,
-    /// Of times of flight in s.
-    pub time_s: f64,
-    /// Of ratios of peaks.
-    pub ratio: f64,
+    /// Of measured values, in the order of [`Observable::ALL`].
+    pub values: [f64; 4],
     /// Correlation of the errors of both times at one speed.
     pub correlation: f64,
+    /// How well these standard errors are known: candidates are widened as data are.
+    pub freedom: Freedom,
 }
 
 /// Where a file has the push on bead 1.
@@ -67,31 +67,32 @@ const PUSH: &str = "near_end.force";
 const USUAL_RATIO_ERROR: f64 = 0.005;
 
 impl ExpectedErrors {
-    /// As in data taken so far: medians.
+    /// As in data taken so far: medians, those of the other time or the other ratio where an
+    /// observable has not been measured.
     pub fn like(data: &Data) -> Self {
-        let of = |times: bool| {
-            let rows = data.rows.iter();
-            let values = rows.flat_map(move |row| {
-                let wanted = Observable::ALL.into_iter().filter(move |of| of.is_time() == times);
-                wanted.filter_map(|of| Some(row.value(of)?.sigma))
-            });
-            median(values.collect())
-        };
-        let speeds = data.rows.iter().map(|row| row.speed_m_s.sigma).collect();
-        let both = data.rows.iter().filter(|row| row.values[..2].iter().all(Option::is_some));
+        let rows = || data.rows.iter();
+        let own = Observable::ALL.map(|of| {
+            let measured = || rows().filter_map(move |row| Some((row, row.value(of)?.sigma)));
+            let freedom = measured().map(|(row, _)| row.freedom.values[of.index()]).collect();
+            Some((median(measured().map(|(_, sigma)| sigma).collect())?, median(freedom)?))
+        });
+        let all = Observable::ALL.map(|of| {
+            let at = of.index();
+            let usual = if of.is_time() { f64::NAN } else { USUAL_RATIO_ERROR };
+            // Both times stand side by side, and so do both ratios.
+            own[at].or(own[at ^ 1]).unwrap_or((usual, f64::INFINITY))
+        });
+        let both = rows().filter(|row| row.values[..2].iter().all(Option::is_some));
         let correlations = both.filter_map(|row| row.correlation).collect();
+        let of_speed = median(rows().map(|row| row.freedom.speed).collect());
         Self {
-            speed_m_s: median(speeds).unwrap_or(0.0),
-            time_s: of(true).unwrap_or(f64::NAN),
-            ratio: of(false).unwrap_or(USUAL_RATIO_ERROR),
+            speed_m_s: median(rows().map(|row| row.speed_m_s.sigma).collect()).unwrap_or(0.0),
+            values: all.map(|(sigma, _)| sigma),
             correlation: median(correlations).unwrap_or(0.0),
-        }
-    }
-
-    fn of(&self, observable: Observable) -> f64 {
-        match observable.is_time() {
-            true => self.time_s,
-            false => self.ratio,
+            freedom: Freedom {
+                speed: of_speed.unwrap_or(f64::INFINITY),
+                values: all.map(|(_, freedom)| freedom),
+            },
         }
     }
 }
@@ -227,7 +228,7 @@ fn of_way(
     let problem = CurveProblem::of_curves(vec![(model.for_slopes(), data)], &[]);
     let jacobian = jacobian_at(&problem, fit)?;
     let measured = problem.measured();
-    let candidate = |(row, speed): (usize, &f64)| {
+    let candidate = |(row, speed): (usize, String)| {
         let own = measured.iter().enumerate();
         let own: Vec<usize> = own.filter(|(_, (_, of, _))| *of == row).map(|(at, _)| at).collect();
         let columns = || jacobian.columns.iter();
@@ -235,7 +236,7 @@ fn of_way(
             |column: &Vec<f64>| norm(&own.iter().map(|at| column[*at]).collect::<Vec<_>>());
         let doubts = columns().zip(&jacobian.disagreement);
         Candidate {
-            name: format!("{speed:.3} m/s: {}", way.name),
+            name: format!("{speed} m/s: {}", way.name),
             rows: own.iter().map(|at| columns().map(|column| column[*at]).collect()).collect(),
             doubts: doubts
                 .map(|(column, disagreement)| JUMPING * disagreement * length(column))
@@ -243,7 +244,7 @@ fn of_way(
             cost: way.cost,
         }
     };
-    Ok(speeds_m_s.iter().enumerate().map(candidate).collect())
+    Ok(apart(speeds_m_s).into_iter().enumerate().map(candidate).collect())
 }
 
 /// Data as they would be at the fit, without noise.
@@ -258,7 +259,7 @@ fn expected(
     let curve = model.curve(&fit.point, &speeds)?;
     let row = |(at, speed): (usize, &f64)| {
         let value = |of: Observable| {
-            let sigma = errors.of(of);
+            let sigma = errors.values[of.index()];
             let wanted = way.observables.contains(&of);
             let value = curve.get(at)?[of.index()].filter(|_| wanted)?;
             Some(Estimate { value, sigma })
@@ -268,7 +269,7 @@ fn expected(
             speed_m_s: Estimate { value: *speed, sigma: errors.speed_m_s },
             values: Observable::ALL.map(value),
             correlation: Some(errors.correlation),
-            freedom: Freedom::KNOWN,
+            freedom: errors.freedom,
         }
     };
     Ok(Data {

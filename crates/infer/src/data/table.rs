@@ -205,9 +205,14 @@ impl Columns {
             return Err(missing(&names.join("` or `"), instead(titles, wanted)));
         }
         let incident = observables[0].as_ref().map(|of| titles[of.value].as_str());
-        let correlation = CORRELATIONS[usize::from(incident == Some(AT_MEAN_SPEED[0]))];
+        let correlations = match incident == Some(AT_MEAN_SPEED[0]) {
+            false => &CORRELATIONS[..1],
+            // The plain means' own is that of other errors.
+            true if find(titles, &[Observable::Incident.column()]).is_some() => &CORRELATIONS[1..],
+            true => &[CORRELATIONS[1], CORRELATIONS[0]],
+        };
         Ok(Self {
-            correlation: find(titles, &[correlation]),
+            correlation: find(titles, correlations),
             shots: find(titles, &["shots"]),
             speed,
             observables,

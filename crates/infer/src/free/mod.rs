@@ -181,7 +181,7 @@ pub fn same_number(one: (&Experiment, &str), other: (&Experiment, &str)) -> bool
 
 /// Speeds in m/s with as many digits as distinguish them, four at the least; one that comes again
 /// has a number behind it.
-fn apart(speeds_m_s: &[f64]) -> Vec<String> {
+pub(crate) fn apart(speeds_m_s: &[f64]) -> Vec<String> {
     let rounded = |digits: usize| -> Vec<String> {
         let short = |speed: &f64| {
             let text = format!("{speed:.*e}", digits - 1);

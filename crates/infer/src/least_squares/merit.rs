@@ -308,6 +308,9 @@ pub struct Jacobian {
     /// Difference between both step sizes' columns as a share of the column's length; the
     /// extrapolated column is usually some ten times better.
     pub disagreement: Vec<f64>,
+    /// Parameters by which derivatives are one-sided because the model fails on the other side, and
+    /// why it does.
+    pub failing: Vec<(usize, ModelError)>,
 }
 
 impl Jacobian {
@@ -366,6 +369,9 @@ pub(crate) fn jacobian(
         let length = norm(near);
         if length == 0.0 { 0.0 } else { norm(&difference) / length }
     };
+    let failure = |(k, pair): (usize, &[Result<_, ModelError>])| {
+        Some((k, pair.iter().find_map(|side| side.as_ref().err())?.clone()))
+    };
     let pairs = || close.columns.iter().zip(&wide.columns);
     let columns: Vec<Vec<f64>> = pairs().map(|(near, far)| extrapolated(near, far)).collect();
     let slopes = Slopes {
@@ -377,6 +383,7 @@ pub(crate) fn jacobian(
         data_rows: problem.residual_count(),
         steps: steps.to_vec(),
         disagreement: pairs().map(|(near, far)| disagreement(near, far)).collect(),
+        failing: first.chunks(2).enumerate().filter_map(failure).collect(),
     };
     Ok((jacobian, slopes))
 }

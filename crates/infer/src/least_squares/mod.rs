@@ -407,12 +407,14 @@ fn determined_fall(loose: &[Loose]) -> Option<f64> {
 
 /// Two bounds of one sign farther apart than this are spread over by logarithm.
 const WIDE_RATIO: f64 = 10.0;
-/// Factor to either side of a positive number that has no two bounds.
+/// Factor to either side of a positive number that has no two bounds; scales to either side of one
+/// with bounds of both signs.
 const AROUND: f64 = 10.0;
 
 /// `count` points: first where the parameters start, then seeded ones: from the prior if there is
 /// one, else between the bounds if both exist, else by the logarithm around a positive start, else
-/// a normal number as wide as the scale; never beyond a bound.
+/// a normal number as wide as the scale; never beyond a bound. Bounds of both signs are spread over
+/// up to ten scales from the start: an exponent of 5 makes a contact's number absurd at slow shots.
 fn starts(parameters: &[Parameter], count: usize, seed: u64) -> Vec<Vec<f64>> {
     let spread = |p: &Parameter, random: &mut RandomStream| {
         let value = match p.prior {
@@ -424,7 +426,9 @@ fn starts(parameters: &[Parameter], count: usize, seed: u64) -> Vec<Vec<f64>> {
                 p.lower * (p.upper / p.lower).powf(random.uniform())
             }
             Prior::Flat if p.lower.is_finite() && p.upper.is_finite() => {
-                p.lower + (p.upper - p.lower) * random.uniform()
+                let most = if p.lower < 0.0 { AROUND * p.scale } else { f64::INFINITY };
+                let (lower, upper) = (p.lower.max(p.start - most), p.upper.min(p.start + most));
+                lower + (upper - lower) * random.uniform()
             }
             Prior::Flat if p.lower >= 0.0 && p.start > 0.0 => {
                 p.start * AROUND.powf(2.0 * random.uniform() - 1.0)

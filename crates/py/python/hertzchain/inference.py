@@ -280,7 +280,7 @@ def _unmasked(name: str, values: Any) -> Any:
 
 def _cell(value: Any) -> Any:
     """A text, or a number; nothing for NaN."""
-    return value if isinstance(value, str) else "" if np.isnan(number := float(value)) else number
+    return value if isinstance(value, (str, int)) else "" if np.isnan(number := float(value)) else number
 
 
 def modelled(model: Experiment | options.Path_ | None) -> Experiment:

@@ -833,7 +833,8 @@ class FitResult(Result):
         if not self.converged:
             rows["warning"] = "the descent did not come to a minimum"
         if "data" in known:
-            return f"Fit of {known['model']} to {known['data']['values']} values", rows
+            tables = f" in {len(known['tables'])} tables" if "tables" in known else ""
+            return f"Fit of {known['model']} to {known['data']['values']} values{tables}", rows
         rows |= {"left out": why for why in known["left_out"][:1]}
         return f"Fit of {known['model']} to whole pulses of {len(known['records'])} records", rows
 

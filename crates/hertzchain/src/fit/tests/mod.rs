@@ -37,3 +37,32 @@ fn another_pair_of_two_times_is_told_or_how_to_look_for_it() {
     let rise = |start: &Started| 2.0 * (start.cost - found.inferred.fit.cost);
     assert!(minima.iter().all(|(start, _)| rise(start) <= 9.0));
 }
+
+/// Two minima, x = 1 and x = −1, of which the second is hardly better; the data reject both.
+struct TwoMinima([Parameter; 1]);
+
+impl Problem for TwoMinima {
+    fn parameters(&self) -> &[Parameter] {
+        &self.0
+    }
+
+    fn residual_count(&self) -> usize {
+        2
+    }
+
+    fn residuals(&self, points: &[Vec<f64>]) -> hertzchain_infer::Outcomes {
+        let rows = |x: f64| vec![(x * x - 1.0) / 0.1, 6.0 + 0.1 * x];
+        points.iter().map(|p| Ok(hertzchain_infer::Residuals::new(rows(p[0])))).collect()
+    }
+}
+
+#[test]
+fn unasked_starts_replace_no_minimum_by_one_that_fits_as_well() {
+    let problem = TwoMinima([Parameter::new("x", "", 1.0).within(-2.0, 2.0)]);
+    let found = best_of_starts(&problem, 0, &Fitting::default()).unwrap();
+    assert_eq!(found.starts.len(), UNASKED);
+    assert!((found.point[0] - 1.0).abs() < 0.01, "{:?}", found.point);
+    // The other is reported beside it: χ² is 12 · 0.2 lower.
+    let (other, _) = found.other_minima(&[0.1])[0];
+    assert!((2.0 * (other.cost - found.cost) + 2.4).abs() < 0.01, "{}", other.cost);
+}

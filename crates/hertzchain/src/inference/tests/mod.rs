@@ -47,3 +47,16 @@ fn numbers_are_set_by_short_names_too_and_mistakes_stand_on_the_command_line() {
         assert!(why.starts_with(&format!("--set {words}: ")) && why.contains(expected), "{why}");
     }
 }
+
+#[test]
+fn a_case_may_be_a_number_and_a_bound_none() {
+    let options = serde_json::json!({
+        "free": "eta", "case": 1, "bounds": { "eta": [1e4, null], "B": [null, "inf"] }
+    });
+    let fit: Fit = crate::options::from_json("fit", options).unwrap();
+    assert_eq!(fit.measured.case.as_deref(), Some("1"));
+    let mut parameters = ["eta", "B"].map(|name| hertzchain_infer::Parameter::new(name, "", 3e4));
+    known::apply(&fit.freed, &mut parameters).unwrap();
+    let ends = parameters.map(|parameter| [parameter.lower, parameter.upper]);
+    assert_eq!(ends, [[1e4, f64::INFINITY], [f64::NEG_INFINITY, f64::INFINITY]]);
+}

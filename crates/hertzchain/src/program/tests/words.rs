@@ -16,6 +16,7 @@ fn rough_derivatives_are_told_with_the_parameter_and_what_to_do() {
         data_rows: 1,
         steps: vec![1e-3; 2],
         disagreement,
+        failing: Vec::new(),
     };
     let reported = rough(&free, &with(vec![0.02, 0.43])).unwrap();
     for word in ["wet.A at 0.31 m/s differ by 43 %", "--method profile", "--accuracy"] {

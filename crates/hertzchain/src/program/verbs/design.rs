@@ -7,7 +7,7 @@ use crate::program::{
     with_notes,
 };
 use crate::{design, inference};
-use hertzchain_infer::{CurveProblem, Expected, titled};
+use hertzchain_infer::{CurveProblem, Expected, ExpectedErrors, Observable, titled};
 use std::path::Path;
 
 const SHOWN: usize = 15;
@@ -65,15 +65,35 @@ fn text(problem: &CurveProblem, run_design: &DesignResult) -> String {
             .collect::<Vec<_>>()
     };
     format!(
-        "{}Now: {}\n{}{}\n{}\n{}\n{}\n{}",
+        "{}Now: {}\n{}\n{}{}\n{}\n{}\n{}\n{}",
         unfit(run_design),
         now.join(", "),
+        expected(&run_design.errors),
         lines(inference::references(problem.model())),
         warnings(problem, run_design),
         heading("One measurement more, best first"),
         format::table(&head, found.ranked.iter().take(SHOWN).map(row)),
         heading("A series, each the best after those before it"),
         format::table(&head, found.greedy.iter().map(row))
+    )
+}
+
+/// Which errors the measurements to come are taken to have.
+fn expected(errors: &ExpectedErrors) -> String {
+    // No candidate has the wall's ratio.
+    let read = |(of, _): &(Observable, f64)| *of != Observable::WallOverPassing;
+    let named = Observable::ALL.into_iter().zip(errors.values).filter(read);
+    let named = named.map(|(of, error)| format!("{} {}", of.column(), digits(error, 3)));
+    let freedom = errors.freedom.values.into_iter().fold(errors.freedom.speed, f64::min);
+    let widened = match freedom.is_finite() {
+        true => format!("; of {freedom:.0} degrees of freedom at the least, and widened for that"),
+        false => String::new(),
+    };
+    format!(
+        "Expected errors, medians of the data's: speed_m_s {}, {}, tof_correlation {}{widened}",
+        digits(errors.speed_m_s, 3),
+        named.collect::<Vec<_>>().join(", "),
+        digits(errors.correlation, 3)
     )
 }
 

@@ -45,3 +45,17 @@ fn times_at_the_mean_speed_are_read_before_means_that_scatter_with_speeds() {
     let columns = Columns::of(&titles(text), &[Observable::Reflected], "a.csv");
     assert!(columns.is_err());
 }
+
+#[test]
+fn the_correlation_is_that_of_the_times_that_are_read() {
+    let read =
+        |text: &str| Columns::of(&titles(text), &Observable::ALL, "a.csv").unwrap().correlation;
+    let at_mean_speed = "speed_m_s,tof_incident_at_mean_speed_s,tof_reflected_at_mean_speed_s";
+    // Of a table with these times alone, `tof_correlation` can mean no others.
+    assert_eq!(read(&format!("{at_mean_speed},tof_correlation")), Some(3));
+    let own = format!("{at_mean_speed},tof_correlation,tof_at_mean_speed_correlation");
+    assert_eq!(read(&own), Some(4));
+    assert_eq!(read(&format!("{at_mean_speed},tof_incident_s,tof_correlation")), None);
+    let plain = "speed_m_s,tof_incident_s,tof_at_mean_speed_correlation";
+    assert_eq!((read(plain), read(&format!("{plain},tof_correlation"))), (None, Some(3)));
+}

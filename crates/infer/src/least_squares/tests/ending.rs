@@ -18,3 +18,17 @@ fn a_slope_along_what_nothing_determines_is_no_fall() {
     let apart = [loose(one, 1.0), loose([50.0, -100.0], -1.0)];
     assert_eq!(determined_fall(&apart), None);
 }
+
+#[test]
+fn starts_between_bounds_of_both_signs_stay_near_what_matters() {
+    let exponent = Parameter { scale: 0.1, ..Parameter::new("k", "", 0.0).within(-5.0, 5.0) };
+    let positive = Parameter::new("B", "", 77.0).within(0.0, 1e4);
+    let spread = |parameter: &Parameter| {
+        let all = starts(std::slice::from_ref(parameter), 100, 0).concat();
+        all.into_iter().map(|start| (start - parameter.start).abs()).fold(0.0, f64::max)
+    };
+    // K v^k of K v^±5 is a thousandfold at the slowest shot of a curve, and endless work.
+    let widest = spread(&exponent);
+    assert!(widest <= 1.0 && widest > 0.9, "{widest}");
+    assert!(spread(&positive) > 9e3);
+}

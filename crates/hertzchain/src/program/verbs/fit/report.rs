@@ -6,7 +6,8 @@ use crate::options::FitOptions as Arguments;
 use crate::program::words::{doubt, p_value, rough};
 use crate::program::{chi_square_text, digits, estimate, format, heading, lines, misfit, percent};
 use hertzchain_infer::{
-    Advice, Comparison, End, Goodness, Loss, Observable, Parameter, Prior, Profile, Runs, Started,
+    Advice, Comparison, End, Goodness, Loss, ModelError, Observable, Parameter, Prior, Profile,
+    Runs, Started,
 };
 
 /// The solver's error may be this share of the least standard error.
@@ -100,6 +101,7 @@ fn derivatives(fit_result: &Inferred) -> String {
 pub(super) fn warnings(fit_result: &Inferred) -> String {
     let doubt = doubt(&fit_result.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("warning: {doubt}\n"));
+    text += &edges(fit_result);
     let rough = rough(&fit_result.parameters, &fit_result.fit.jacobian);
     text += &rough.map_or(String::new(), |reported| format!("warning: {reported}.\n"));
     text += &misfit(&fit_result.goodness)
@@ -114,6 +116,18 @@ pub(super) fn warnings(fit_result: &Inferred) -> String {
     text + &other_minima(fit_result)
 }
 
+/// That the best fit is next to where the model can't be computed.
+fn edges(fit_result: &Inferred) -> String {
+    let line = |(at, error): &(usize, ModelError)| {
+        format!(
+            "warning: the model fails next to this {}: {error}. The fit can't go beyond, and its errors say nothing of \
+             that\n",
+            fit_result.parameters[*at].name
+        )
+    };
+    fit_result.fit.jacobian.failing.iter().map(line).collect()
+}
+
 /// Other minima that fit as well: errors hold for one of them.
 fn other_minima(fit_result: &Inferred) -> String {
     let minima = fit_result.other_minima();
@@ -126,9 +140,10 @@ fn other_minima(fit_result: &Inferred) -> String {
             format!("{} = {} {}", parameter.name, digits(*value, 6), parameter.unit)
         });
         format!(
-            "  {} (χ² higher by {}, {count} starts)\n",
+            "  {} (χ² {} by {}, {count} starts)\n",
             values.collect::<Vec<_>>().join(", ").trim_end(),
-            digits(2.0 * (start.cost - fit_result.fit.cost), 2)
+            if start.cost < fit_result.fit.cost { "lower" } else { "higher" },
+            digits(2.0 * (start.cost - fit_result.fit.cost).abs(), 2)
         )
     };
     let lines: String = minima.iter().map(line).collect();
