@@ -189,9 +189,10 @@ impl FitResult {
 /// Starts of a fit whose first came to a minimum that the data reject, and most free
 /// parameters for which they are tried.
 const UNASKED: usize = 8;
+const FEW: usize = 8;
+
 /// Half of the difference of χ² of minima that fit as well as each other.
 const HARDLY_BETTER: f64 = 4.5;
-const FEW: usize = 8;
 
 /// The best fit, as asked; where chance can't be why the data are so far from it, the best of
 /// several starts: a minimum may be another than the data's. One that is hardly better than the

@@ -19,6 +19,7 @@ const DEVIATION: f64 = 0.16;
 const BEFORE: f64 = 0.3;
 /// Largest force of the wall, over a reflected pulse, that comes back before it.
 const RISEN: f64 = 0.015;
+
 /// What is under a pulse at its maximum over what is known of it.
 struct Under {
     /// Over the least that the other sensor's signal may have come to before the pulse, and over how far
