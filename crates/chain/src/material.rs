@@ -86,6 +86,12 @@ impl BeadPair {
         4.0 / 3.0 * self.radius_m.sqrt() / compliance
     }
 
+    /// Yield strength of the weaker body in Pa, where one is known.
+    pub fn yield_strength_pa(&self) -> Option<f64> {
+        let known = [self.left, self.right].into_iter().filter_map(|body| body.yield_strength_pa);
+        known.reduce(f64::min)
+    }
+
     /// Compliance-weighted mean (A1 D1 + A2 D2)/(D1 + D2) of a relaxation
     /// time in s, as unlike bodies share one [Goldobin2015].
     pub fn mean_relaxation_time_s(&self, of: fn(&Material) -> f64) -> f64 {

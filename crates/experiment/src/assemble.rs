@@ -146,9 +146,10 @@ fn striker(
     materials: &[Material],
 ) -> Result<Bead, FileProblem> {
     let radius_m = shape.radius_m.unwrap_or(first.radius_m);
-    let like_bead_1 = radius_m == first.radius_m && shape.material.is_none();
-    let of_bead_1 = || spec.groups.first()?.cell.first()?.material;
-    let density = spec.materials.density_kg_m3(shape.material.or_else(of_bead_1));
+    let of_bead_1 = spec.groups.first().and_then(|group| group.cell.first()?.material);
+    let of_striker = shape.material.or(of_bead_1);
+    let like_bead_1 = radius_m == first.radius_m && of_striker == of_bead_1;
+    let density = spec.materials.density_kg_m3(of_striker);
     let own = like_bead_1.then_some(first.mass_kg);
     let full = density.map(|density| sphere_mass_kg(radius_m, density));
     let label =

@@ -331,7 +331,7 @@ static SECTION: Fields = table! { "[[contacts]]";
 static STRIKER: Fields = table! { "[striker]";
     speed(Always): positive("m/s"), "speed toward the chain at first touch";
     radius: positive("m"), "radius; default: as bead 1";
-    mass: positive("kg"), "mass; default: as bead 1, or from the material's density";
+    mass: positive("kg"), "mass; default: as bead 1, or from the material's density if it differs in size or material";
     material: Text, "name of a material";
 };
 
@@ -350,7 +350,7 @@ static DRIVEN: Variants = variants! { "[driven]" motion;
     }
     "table" {
         times: Quantities("s"), "times, increasing";
-        positions: Quantities("m"), "positions, one a time";
+        positions: Quantities("m"), "positions, one a time, relative to the first";
         file: Text, "CSV file with columns time_s,position_m, beside this file";
         radius: positive("m"), "radius of the driven body; default: as bead 1";
         material: Text, "name of a material";
@@ -392,7 +392,7 @@ static NEAR_END: Variants = variants! { "[near_end]" push;
 
 static TRACK: Fields = table! { "[track]";
     incline: Quantity("rad", QUARTER_TURN), "incline, the wall below; default 0";
-    gravity: Quantity("m/s^2", GRAVITY), "gravity; default 9.80665 m/s^2";
+    gravity: Quantity("m/s^2", GRAVITY), "gravity; default 9.80665 m/s^2, 0 in dimensionless files";
     friction: Quantity("1", FRICTION), "dry friction of beads on the track, between shots; default 0.05";
 };
 

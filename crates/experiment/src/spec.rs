@@ -76,6 +76,7 @@ impl Spec {
         let suspension = root.table("suspension");
         let solver = root.table("solver");
         let liquid = Liquid::read_from(root)?;
+        without_si(root)?;
         let in_solver = |key| solver.map_or(root.span(), |t| t.span_of(key));
         let spec = Self {
             title: root.text("title").unwrap_or("untitled").to_owned(),
@@ -323,6 +324,34 @@ impl Spec {
                 left.join(" and ")
             )),
         }
+    }
+}
+
+/// Refuses what acts by the Earth's gravity, or is a number in SI, in a file without units.
+fn without_si(root: &TableView<'_>) -> Result<(), FileProblem> {
+    if root.units == Units::Si {
+        return Ok(());
+    }
+    let in_table = |name: &str, key: &str| root.table(name).is_some_and(|t| t.has(key));
+    let falls = match [root.has("suspension"), in_table("track", "incline")] {
+        [true, _] => Some("suspension"),
+        [_, true] => Some("track"),
+        _ => None,
+    };
+    if let Some(key) = falls.filter(|_| !in_table("track", "gravity")) {
+        let message = "a dimensionless chain has no gravity unless it is given";
+        let problem = root.problem(key, message, "this has no effect without");
+        return Err(problem.help("add `gravity` to [track], such as `gravity = 1`"));
+    }
+    let reading = Reading::read(root).changes();
+    let of_si = ["preload", "incline", "stop"];
+    match reading.iter().find(|(switch, _)| of_si.contains(switch)) {
+        Some((switch, option)) => {
+            let message =
+                format!("the reading {switch} = \"{option}\" is of the paper's row in SI");
+            Err(root.problem("reading", message, "expected a file with SI units"))
+        }
+        None => Ok(()),
     }
 }
 

@@ -34,7 +34,7 @@ impl HertzContact {
         Self::of(units, plan, (plan.chain.beads.len(), force_n))
     }
 
-    /// That of the highest pressure; `None` without a material or unit.
+    /// That of the highest pressure over its yield strength, where any is known; `None` without a material or unit.
     pub(crate) fn hardest(units: Units, plan: &Plan, shot: &Shot) -> Option<Self> {
         Self::of(units, plan, shot.hardest?)
     }
@@ -55,20 +55,14 @@ impl HertzContact {
             radius_m,
             pressure_pa,
             yield_strength_pa: pressure_pa / FIRST_YIELD,
-            material_yield_strength_pa: yield_strength_pa(pair),
+            material_yield_strength_pa: pair.yield_strength_pa(),
         })
     }
 }
 
-/// Yield strength of the weaker body, where one is known.
-fn yield_strength_pa(pair: &BeadPair) -> Option<f64> {
-    let known = [pair.left, pair.right].into_iter().filter_map(|body| body.yield_strength_pa);
-    known.reduce(f64::min)
-}
-
 /// Force at which the first ball of a contact yields, (π p₀ R*/1.5)³/K² with p₀ of first yield.
 fn first_yield_n(pair: &BeadPair) -> Option<f64> {
-    let pressure_pa = FIRST_YIELD * yield_strength_pa(pair)?;
+    let pressure_pa = FIRST_YIELD * pair.yield_strength_pa()?;
     let force_n = (PI * pressure_pa * pair.radius_m / 1.5).powi(3) / pair.hertz_stiffness().powi(2);
     Some(force_n).filter(|force_n| force_n.is_finite() && *force_n > 0.0)
 }

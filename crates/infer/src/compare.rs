@@ -1,6 +1,6 @@
 //! Model comparison: information criteria and cross-validation.
 
-use crate::goodness::{LEAST_BY_CHANCE, chi_square_of};
+use crate::goodness::{LEAST_BY_CHANCE, chi_square_of_fit};
 use crate::least_squares::{Descent, Merit, run};
 use crate::random::{Purpose, RandomStream};
 use crate::{Fit, Fitting, InferError, Loss, Problem};
@@ -43,7 +43,7 @@ impl Criteria {
         Self {
             parameters,
             data,
-            chi_square: chi_square_of(fit.residuals.iter().copied(), parameters),
+            chi_square: chi_square_of_fit(fit, parameters),
             deviance,
             aic,
             aicc: aic + small,

@@ -1,8 +1,8 @@
 //! Goodness of fit: chi-square, runs of equal sign, the largest residual.
 
 use crate::identify::directions_at;
-use crate::{Fit, Problem};
-use hertzchain_measure::signal::{ChiSquare, Estimate, chi_square};
+use crate::{Fit, Loss, Problem};
+use hertzchain_measure::signal::ChiSquare;
 use std::ops::Range;
 
 /// How well a fit describes its data.
@@ -10,6 +10,8 @@ use std::ops::Range;
 pub struct Goodness {
     /// Chi-square of data and priors together; `None` if there are no more of them than parameters.
     pub chi_square: Option<ChiSquare>,
+    /// Numbers that a robust fit leaves out of chi-square as outliers.
+    pub outliers: usize,
     /// √(χ²/degrees of freedom): what all σ would have to be multiplied by.
     pub birge_ratio: Option<f64>,
     /// Runs of equal sign in the order of the data; `None` where there is no chi-square.
@@ -32,14 +34,34 @@ pub struct Largest {
 /// p below which data reject a model: of a thousand fits of right models one is rejected.
 pub(crate) const LEAST_BY_CHANCE: f64 = 1e-3;
 
-/// Chi-square of standardised residuals and the fitted number of parameters.
+/// Chi-square of standardised residuals, with the degrees of freedom f of their σ, and the fitted
+/// number of parameters.
+///
+/// A σ of few shots is widened by √(f/(f − 4)) for the parameters' errors, which makes squares of
+/// residuals (f − 4)/(f − 2) on average: they are taken to 1. They are those of Student's t, whose
+/// variance is (3(f − 2)/(f − 4) − 1)/2 times as large as that of normal deviates.
 pub(crate) fn chi_square_of(
-    residuals: impl Iterator<Item = f64>,
+    residuals: impl Iterator<Item = (f64, f64)>,
     fit_result: usize,
 ) -> Option<ChiSquare> {
-    let rows: Vec<Estimate> = residuals.map(|value| Estimate { value, sigma: 1.0 }).collect();
-    chi_square(&rows, &vec![0.0; rows.len()], fit_result)
+    let (mut value, mut spread, mut count) = (0.0, 0.0, 0_usize);
+    for (residual, freedom) in residuals {
+        let student = if freedom.is_finite() { (freedom - 2.0) / (freedom - 4.0) } else { 1.0 };
+        value += student * residual * residual;
+        spread += 0.5 * (3.0 * student - 1.0);
+        count += 1;
+    }
+    ChiSquare::of(value, count.checked_sub(fit_result)?, spread / count.max(1) as f64)
 }
+
+/// The same of a fit.
+pub(crate) fn chi_square_of_fit(fit: &Fit, fit_result: usize) -> Option<ChiSquare> {
+    chi_square_of(fit.residuals.iter().copied().zip(fit.freedoms.iter().copied()), fit_result)
+}
+
+/// Residuals beyond so many standard errors are outliers to a robust fit, up to a share of all.
+const OUTLIER: f64 = 4.0;
+const MOST_OUTLIERS: f64 = 0.2;
 
 impl Goodness {
     /// Of a fit of a problem.
@@ -53,9 +75,13 @@ impl Goodness {
     pub fn with_nuisances(nuisances: usize, problem: &dyn Problem, fit: &Fit) -> Self {
         let priors = problem.parameters().iter().zip(&fit.point);
         let priors = priors.filter_map(|(p, value)| p.prior.residual(*value));
-        let rows = fit.residuals.iter().copied().chain(priors);
-        let chi_square = chi_square_of(rows, nuisances + fit.rank);
+        let outliers = outliers(fit);
+        let data = fit.residuals.iter().copied().zip(fit.freedoms.iter().copied());
+        let data = data.filter(|(residual, _)| outliers == 0 || residual.abs() < OUTLIER);
+        let priors = priors.map(|residual| (residual, f64::INFINITY));
+        let chi_square = chi_square_of(data.chain(priors), nuisances + fit.rank);
         Self {
+            outliers,
             birge_ratio: chi_square.map(|found| (found.value / found.freedom as f64).sqrt()),
             chi_square,
             // As many numbers as parameters are met, but for rounding: its signs mean nothing.
@@ -68,6 +94,13 @@ impl Goodness {
     pub fn is_rejected(&self) -> bool {
         self.chi_square.is_some_and(|found| found.probability < LEAST_BY_CHANCE)
     }
+}
+
+/// Residuals that a robust fit leaves out of chi-square: few that are far off.
+fn outliers(fit: &Fit) -> usize {
+    let beyond = fit.residuals.iter().filter(|residual| residual.abs() >= OUTLIER).count();
+    let are_few = beyond as f64 <= MOST_OUTLIERS * fit.residuals.len() as f64;
+    if fit.loss != Loss::Squares && are_few { beyond } else { 0 }
 }
 
 /// Difference of squared distances below which either of two numbers that share errors may be the

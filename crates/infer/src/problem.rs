@@ -184,6 +184,11 @@ pub trait Problem: Sync {
         Ok(None)
     }
 
+    /// Degrees of freedom of each residual's σ; `None` where all are known.
+    fn freedoms(&self, _point: &[f64]) -> Result<Option<Vec<f64>>, ModelError> {
+        Ok(None)
+    }
+
     /// What a residual belongs to, as messages name it: "row 3, reflected ToF".
     fn residual_label(&self, index: usize) -> String {
         format!("residual {}", index + 1)

@@ -45,13 +45,14 @@ impl Pairs {
         self.certain() * found
     }
 
-    /// Correlation of the plain means, whose standard errors are those of the scatter.
-    pub(crate) fn of_means(&self, errors: [f64; 2]) -> Option<f64> {
-        let scatter = match self.shots.0 > 1 {
-            true => self.certain() * self.scatter,
+    /// Correlation of the plain means, whose standard errors are those of the scatter and of what
+    /// all shots share; one shot's own covariance holds it.
+    pub(crate) fn of_means(&self, errors: [f64; 2], shared_s2: f64) -> Option<f64> {
+        let covariance = match self.shots.0 > 1 {
+            true => self.certain() * self.scatter + shared_s2,
             false => self.picking,
         };
-        correlation(scatter, errors)
+        correlation(covariance, errors)
     }
 
     /// Two shots leave their correlation at ±1 whatever it is, many determine it: (n − 2)/(n − 1).

@@ -328,15 +328,19 @@ fn row(
     let speeds: Vec<Estimate> = counted.iter().map(|shot| shot.speed).collect();
     let speed_m_s = mean_speed(&speeds)?;
     let moved = [0, 1].map(|time| at_speed(&counted, speed_m_s, time));
-    let incident_s = of(&|flight| Some(flight.incident_s))?;
-    let reflected_s = of(&|flight| flight.reflected_s);
+    let shared_s = [0, 1].map(|time| shared_s(&counted, time));
+    let mut incident_s = of(&|flight| Some(flight.incident_s))?;
+    incident_s.share(shared_s[0]);
+    let mut reflected_s = of(&|flight| flight.reflected_s);
+    reflected_s.iter_mut().for_each(|back| back.share(shared_s[1]));
     let errors = |back: Summary| [incident_s.error, back.error];
+    let plain = |back| both_times(&counted, None).of_means(errors(back), shared_of_both(&counted));
     Some(SpeedRow {
         speed_m_s,
         speed_error_shots: if are_known(&speeds) { 0 } else { speeds.len() },
-        shared_s: [0, 1].map(|time| shared_s(&counted, time)),
+        shared_s,
         at_mean_speed_s: moved.map(|of| of.map(TimeAtSpeed::estimate)),
-        correlation: reflected_s.and_then(|back| both_times(&counted, None).of_means(errors(back))),
+        correlation: reflected_s.and_then(plain),
         correlation_at_mean_speed: correlation_at_speed(&counted, speed_m_s, moved),
         shots: (counted.len(), all - counted.len()),
         returns_undecided,
@@ -441,6 +445,13 @@ fn both_times(shots: &[Timed<'_>], speed_m_s: Option<Estimate>) -> Pairs {
     Pairs::new(&both, shots.len())
 }
 
+/// What shots with both times share of the covariance of both means in s².
+fn shared_of_both(shots: &[Timed<'_>]) -> f64 {
+    let returned = shots.iter().map(|shot| shot.flight);
+    let returned: Vec<&Flight> = returned.filter(|f| f.reflected_s.is_some()).collect();
+    shared_s2(&returned)
+}
+
 /// Correlation of the errors of both times at the mean speed, part by part.
 fn correlation_at_speed(
     shots: &[Timed<'_>],
@@ -451,9 +462,7 @@ fn correlation_at_speed(
     let pairs = both_times(shots, Some(speed_m_s));
     let of_speed = forth.of_speed_s * back.of_speed_s;
     let excess = pairs.excess(of_speed, [forth.excess_s2, back.excess_s2]);
-    let returned = shots.iter().map(|shot| shot.flight);
-    let returned: Vec<&Flight> = returned.filter(|f| f.reflected_s.is_some()).collect();
-    let covariance = pairs.picking + excess + shared_s2(&returned);
+    let covariance = pairs.picking + excess + shared_of_both(shots);
     correlation(covariance, [forth, back].map(|of| of.estimate().sigma))
 }
 

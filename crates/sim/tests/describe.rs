@@ -283,3 +283,122 @@ fn modes_know_a_stop_of_finite_mass_and_a_spring_that_pushes() {
     let between_springs = ((contact_n_m + 1e7) / bead_kg).sqrt() / TAU;
     assert_close(number(&groups, title, "mode 1 of 1"), between_springs, 1e-9);
 }
+
+/// Theory of a file.
+fn theory_of(text: &str) -> Vec<Group> {
+    let experiment = Experiment::from_text("row", text).unwrap();
+    describe_theory(&experiment, &experiment.chain(None).unwrap().0).unwrap()
+}
+
+/// A row of steel balls of 5 mm with these contacts and other lines.
+fn steel(count: usize, laws: &str, more: &str) -> Vec<Group> {
+    theory_of(&format!(
+        r#"
+        materials.a = {{ young_modulus = "213 GPa", poisson_ratio = 0.3, density = "7960 kg/m^3", shear_viscosity = "32 kPa s" }}
+        beads = [{{ count = {count}, radius = "5 mm", material = "a" }}]
+        contacts = [{{ laws = [{laws}] }}]
+        {more}
+        "#
+    ))
+}
+
+const RESTITUTION: &str = "Restitution of the striker";
+
+#[test]
+fn the_viscoelastic_series_is_of_hertz_contacts_alone() {
+    let striker = r#"striker = { speed = "0.3 m/s" }"#;
+    let linear =
+        r#"{ law = "elastic_power", exponent = 1, stiffness = "1e7 N/m" }, "damping_viscoelastic""#;
+    let groups = steel(10, linear, striker);
+    // An independent integration of the pair.
+    assert_close(number(&groups, RESTITUTION, "with all"), 0.9474126, 1e-6);
+    let group = groups.iter().find(|group| group.title.starts_with(RESTITUTION)).unwrap();
+    assert_eq!(group.rows.len(), 1);
+    let clipped = format!("tension = \"clipped\"\n{striker}");
+    let groups = steel(10, r#""elastic_hertz", "damping_viscoelastic""#, &clipped);
+    let whole = number(&groups, RESTITUTION, "with all");
+    // The accuracy of the shot of the pair.
+    assert_close(
+        number(&groups, RESTITUTION, "elastic and viscoelastic terms, exact"),
+        whole,
+        1e-7,
+    );
+}
+
+#[test]
+fn a_bridge_is_stretched_until_it_ruptures_before_balls_have_parted() {
+    let laws = r#""elastic_hertz", { law = "capillary_bridge", surface_tension = "0.07 N/m", volume = "1e-11 m^3", contact_angle = "0.3 rad" }"#;
+    let at = |speed: f64| {
+        steel(
+            2,
+            laws,
+            &format!(
+                "striker = {{ speed = \"{speed} m/s\", radius = \"3 mm\" }}\nfar_end = {{ kind = \"free\" }}"
+            ),
+        )
+    };
+    // What the bridge takes is the same at any speed: m v² (1 − e²) is.
+    let lost = |speed: f64| {
+        let restitution = number(&at(speed), RESTITUTION, "with all");
+        speed * speed * (1.0 - restitution * restitution)
+    };
+    // The accuracy of both shots in what is lost, some thousandths of the energy.
+    assert_close(lost(0.05), lost(0.2), 1e-4);
+    let slow = at(0.002);
+    let group = slow.iter().find(|group| group.title.starts_with(RESTITUTION)).unwrap();
+    assert!(matches!(&group.rows[0].value, Value::Text(text) if text.contains("still act")));
+}
+
+#[test]
+fn a_stiff_law_s_sensor_has_its_peak_off_the_wave_s_centre() {
+    let cubic = r#"{ law = "elastic_power", exponent = 3, stiffness = "1e18 N/m^3" }"#;
+    let groups = steel(40, cubic, r#"striker = { speed = "0.3 m/s" }"#);
+    let title = "Exact solitary wave";
+    let contact = number(&groups, title, "peak contact force");
+    // Each of a bead's contacts is at its peak once; a shot's sensor bead has 42.084 N.
+    assert_close(number(&groups, title, "peak of a bead sensor"), 42.084, 1e-3);
+    assert!(number(&groups, title, "peak of a bead sensor") > 0.5 * contact);
+}
+
+#[test]
+fn small_waves_of_unlike_beads_are_as_fast_in_either_direction() {
+    let row = |first: &str, last: &str| {
+        theory_of(&format!(
+            r#"
+            materials.a = {{ young_modulus = "213 GPa", poisson_ratio = 0.3, density = "7960 kg/m^3" }}
+            beads = [{first}, {{ count = 6, radius = "4 mm", material = "a" }}, {last}]
+            contacts = [{{ laws = ["elastic_hertz"] }}]
+            near_end = {{ push = "constant", force = "10 N" }}
+            striker = {{ speed = "0.3 m/s" }}
+            "#
+        ))
+    };
+    let [small, large] = ["2 mm", "7 mm"]
+        .map(|radius| format!("{{ count = 3, radius = \"{radius}\", material = \"a\" }}"));
+    let speed = |groups: &[Group]| number(groups, "Small waves", "sound speed, by mean");
+    let (forth, back) = (speed(&row(&small, &large)), speed(&row(&large, &small)));
+    // Rounding of sums in another order, and of the equilibrium.
+    assert_close(forth, back, 1e-9);
+}
+
+#[test]
+fn threads_add_their_swing_to_the_modes() {
+    let laws = r#""elastic_hertz", { law = "capillary_bridge", surface_tension = "70 mN/m", volume = "1e-11 m^3" }"#;
+    let of = |more: &str| {
+        steel(
+            4,
+            laws,
+            &format!(
+                "far_end = {{ kind = \"free\" }}\ninitial = [{{ bead = 1, velocity = \"0.1 m/s\" }}]\n{more}"
+            ),
+        )
+    };
+    let title = "Normal modes";
+    let hung = of("suspension = { length = \"1 mm\" }");
+    let swing = (9.80665_f64 / 1e-3).sqrt() / TAU;
+    // Rounding.
+    assert_close(number(&hung, title, "mode 1"), swing, 1e-12);
+    let free = of("");
+    let expected = number(&free, title, "mode 2").hypot(swing);
+    assert_close(number(&hung, title, "mode 2"), expected, 1e-12);
+}

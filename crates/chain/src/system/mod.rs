@@ -236,12 +236,19 @@ impl System {
         a
     }
 
-    /// K²/R*³ of each contact: its Hertz pressure's cube at one force; 0 where no contact is.
+    /// K²/R*³ of each contact, its Hertz pressure's cube at one force, over the cube of its yield strength
+    /// in the largest known one, at which those that are not known are taken; 0 where no contact is.
     pub(crate) fn pressure_factors(&self) -> Vec<f64> {
+        let known = self.kinds.iter().filter_map(|(_, pair)| pair.yield_strength_pa());
+        let strongest_pa = known.fold(0.0, f64::max);
+        let weakness = |pair: &BeadPair| {
+            pair.yield_strength_pa().map_or(1.0, |own| (strongest_pa / own).powi(3))
+        };
         let (mut kinds, mut factor) = (self.kinds.iter().peekable(), 0.0);
         let of_contact = |contact: usize| {
             if let Some((_, pair)) = kinds.next_if(|(first, _)| *first <= contact) {
-                let found: f64 = pair.hertz_stiffness().powi(2) / pair.radius_m.powi(3);
+                let squared: f64 = pair.hertz_stiffness().powi(2);
+                let found = squared / pair.radius_m.powi(3) * weakness(pair);
                 factor = if found.is_finite() { found } else { 0.0 };
             }
             if self.has_contact(contact) { factor } else { 0.0 }

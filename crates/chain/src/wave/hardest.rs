@@ -1,4 +1,4 @@
-//! The contact of the highest pressure in a shot.
+//! The contact of the highest pressure over its yield strength in a shot.
 
 use super::dense::Piece;
 use crate::sensor::Sensor;
@@ -11,13 +11,14 @@ const LANES: usize = 8;
 /// A parabola whose maximum is higher by more than this share is none of the force.
 const STEEPEST: f64 = 0.1;
 
-/// Follows the contact of the highest pressure so far, p₀³ ∝ F K²/R*³ [Hertz1881].
+/// Follows the contact of the highest pressure so far, p₀³ ∝ F K²/R*³ [Hertz1881], over the yield strength
+/// of its weaker body where any is known.
 ///
 /// A step costs a look at the forces that its last stage has left, so that the pressures compared are
 /// those at the ends of steps; the force of the highest is interpolated.
 #[derive(Clone, Debug)]
 pub(super) struct HardestContact {
-    /// K²/R*³ of each contact, 0 where none is.
+    /// K²/R*³ of each contact over its yield strength's cube, 0 where none is.
     factors: Vec<f64>,
     contact: usize,
     force_n: f64,

@@ -91,7 +91,7 @@ pub(super) fn some_time<'de, D: Deserializer<'de>>(source: D) -> Result<Option<G
 ///
 /// # Errors
 /// The option and the speed with a unit.
-pub fn check_speeds(option: &str, speeds: &str, units: Units) -> Result<(), Failure> {
+pub(crate) fn check_speeds(option: &str, speeds: &str, units: Units) -> Result<(), Failure> {
     let mut parts = speeds.split([',', ':']);
     match (units, parts.find(|part| has_unit(part))) {
         (Units::Dimensionless, Some(part)) => Err(dimensionless(option, part.trim())),

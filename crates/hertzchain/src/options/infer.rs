@@ -78,7 +78,7 @@ pub struct ModelOptions {
     #[arg(long, short, value_name = "NAME")]
     #[serde(skip_serializing)]
     pub preset: Option<String>,
-    /// Set a number that stays fixed, such as incline=0.5deg
+    /// Set a number, such as incline=0.5deg; one that is free starts there
     #[arg(long, value_name = "NAME=VALUE")]
     #[serde(with = "pairs")]
     pub set: Vec<Assignment>,

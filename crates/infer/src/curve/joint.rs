@@ -244,6 +244,18 @@ impl Problem for CurveProblem {
         Ok(Some(all))
     }
 
+    fn freedoms(&self, point: &[f64]) -> Result<Option<Vec<f64>>, ModelError> {
+        if self.curves.iter().all(|curve| curve.data.widened().is_none()) {
+            return Ok(None);
+        }
+        let predicted = self.all_curves(&[point.to_vec()]).remove(0)?;
+        let mut all = Vec::new();
+        for (curve, own) in self.parts(&predicted) {
+            curve.freedoms(own, &mut all)?;
+        }
+        Ok(Some(all))
+    }
+
     fn residual_label(&self, index: usize) -> String {
         let named = |curve: &MeasuredCurve, label: &String| match self.curves.len() {
             1 => label.clone(),

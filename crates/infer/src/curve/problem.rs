@@ -141,6 +141,7 @@ impl MeasuredCurve {
     ) -> Result<(), ModelError> {
         for (row, measured) in self.data.rows.iter().enumerate() {
             let (misses, errors) = self.misses(row, measured, curve)?;
+            let errors = errors.widened();
             for (standardised, ln_sigma) in whiten(&misses, &errors) {
                 residuals.standardised.push(standardised);
                 residuals.ln_sigmas.push(ln_sigma);
@@ -157,6 +158,7 @@ impl MeasuredCurve {
     ) -> Result<(), ModelError> {
         for (row, measured) in self.data.rows.iter().enumerate() {
             let (misses, errors) = self.misses(row, measured, curve)?;
+            let errors = errors.widened();
             let (first, count) = (all.len(), misses.len());
             all.extend((0..count).map(|at| {
                 let changes = whiten(&unit(count, at), &errors).into_iter().enumerate();
@@ -166,7 +168,19 @@ impl MeasuredCurve {
         Ok(())
     }
 
-    /// What a row's numbers miss the model by, and their errors.
+    /// Degrees of freedom of each residual's σ.
+    pub(super) fn freedoms(
+        &self,
+        curve: &[Predicted],
+        all: &mut Vec<f64>,
+    ) -> Result<(), ModelError> {
+        for (row, measured) in self.data.rows.iter().enumerate() {
+            all.extend(self.misses(row, measured, curve)?.1.freedoms());
+        }
+        Ok(())
+    }
+
+    /// What a row's numbers miss the model by, and their errors as they were given.
     fn misses(
         &self,
         row: usize,
@@ -194,7 +208,7 @@ impl MeasuredCurve {
             let moved = slope * predicted * relative;
             errors.push(value.sigma, measured.freedom.values[of.index()], moved);
         }
-        Ok((misses, errors.widened()))
+        Ok((misses, errors))
     }
 }
 

@@ -53,18 +53,34 @@ impl Errors {
         in_sigmas.iter().enumerate().map(weigh).collect()
     }
 
-    /// Each by what its own uncertainty costs, in its share of the row's covariance
-    /// C = B + s sᵀ, B of the numbers' own errors: sᵀ C⁻¹ s = q/(1 + q) of the speed and
-    /// (C⁻¹ B)ᵢᵢ = 1 − sᵢ (B⁻¹ s)ᵢ/(1 + q) of the others, q = sᵀ B⁻¹ s; they sum to the number of rows.
-    pub(super) fn widened(mut self) -> Self {
+    /// Shares of the row's covariance C = B + s sᵀ, B of the numbers' own errors:
+    /// (C⁻¹ B)ᵢᵢ = 1 − sᵢ (B⁻¹ s)ᵢ/(1 + q) of each number and sᵀ C⁻¹ s = q/(1 + q) of the speed,
+    /// q = sᵀ B⁻¹ s; they sum to the number of rows.
+    fn shares(&self) -> (Vec<f64>, f64) {
         let parts: Vec<f64> = self.weighed().iter().zip(&self.moved).map(|(w, s)| w * s).collect();
         let q: f64 = parts.iter().sum();
-        for (at, part) in parts.iter().enumerate() {
-            // Correlated numbers may share less than nothing with the speed.
-            let share = (1.0 - part / (1.0 + q)).clamp(0.0, 1.0);
+        // Correlated numbers may share less than nothing with the speed.
+        let own = parts.iter().map(|part| (1.0 - part / (1.0 + q)).clamp(0.0, 1.0));
+        (own.collect(), q / (1.0 + q))
+    }
+
+    /// Degrees of freedom of each number's error with what the speed moves it by [Satterthwaite1946].
+    pub(super) fn freedoms(&self) -> Vec<f64> {
+        let (shares, _) = self.shares();
+        let few = |freedom: f64| if widening(1.0, freedom) > 1.0 { freedom.recip() } else { 0.0 };
+        let of = |(own, freedom): (f64, &f64)| {
+            (own * few(*freedom) + (1.0 - own) * few(self.of_speed)).recip()
+        };
+        shares.into_iter().zip(&self.freedom).map(of).collect()
+    }
+
+    /// Each by what its own uncertainty costs, in its share.
+    pub(super) fn widened(mut self) -> Self {
+        let (shares, of_speed) = self.shares();
+        for (at, share) in shares.into_iter().enumerate() {
             self.sigmas[at] *= widening(share, self.freedom[at]);
         }
-        let of_speed = widening(q / (1.0 + q), self.of_speed);
+        let of_speed = widening(of_speed, self.of_speed);
         self.moved.iter_mut().for_each(|moved| *moved *= of_speed);
         self
     }

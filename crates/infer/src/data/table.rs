@@ -190,16 +190,16 @@ impl Columns {
         let speed = Measured { count: find(titles, &["speed_error_shots"]), ..speed };
         let observables = Observable::ALL.map(|of| {
             let plain = of.column();
-            let finer = AT_MEAN_SPEED.get(of.index()).and_then(|name| {
-                let shared = format!("{}_shared_s", plain.strip_suffix("_s").unwrap_or(plain));
-                Some(Measured {
-                    count: find(titles, &[&format!("{plain}_count")]),
-                    shared: find(titles, &[&shared]),
-                    ..measured(titles, name)?
-                })
+            let shared = format!("{}_shared_s", plain.strip_suffix("_s").unwrap_or(plain));
+            let finer = AT_MEAN_SPEED.get(of.index()).and_then(|name| measured(titles, name));
+            let found = finer.or_else(|| measured(titles, plain)).map(|found| Measured {
+                count: find(titles, &[&format!("{plain}_count")]),
+                shared: find(titles, &[&shared]),
+                ..found
             });
-            finer.or_else(|| measured(titles, plain)).filter(|_| wanted.contains(&of))
+            found.filter(|_| wanted.contains(&of))
         });
+        unclear(titles, wanted, file)?;
         if observables.iter().all(Option::is_none) {
             let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
             return Err(missing(&names.join("` or `"), instead(titles, wanted)));
@@ -218,6 +218,31 @@ impl Columns {
             observables,
         })
     }
+}
+
+/// Refuses a column that stands twice, and one of a wanted observable in another unit or name, which
+/// would be left out without a word.
+fn unclear(titles: &[String], wanted: &[Observable], file: &str) -> Result<(), InferError> {
+    let read = wanted.iter().map(|of| of.column());
+    for column in read.chain(AT_MEAN_SPEED).chain(["speed_m_s"]) {
+        if titles.iter().filter(|title| *title == column).count() > 1 {
+            return InferError::input(format!("{file}: column `{column}` stands there twice"));
+        }
+    }
+    for of in wanted.iter().filter(|of| of.is_time()) {
+        let stem = of.column().strip_suffix("_s").unwrap_or(of.column());
+        let is_there = titles.iter().any(|title| title == of.column())
+            || AT_MEAN_SPEED.get(of.index()).is_some_and(|name| titles.iter().any(|t| t == name));
+        let unread = titles.iter().find(|title| title.starts_with(stem));
+        if let Some(unread) = unread.filter(|_| !is_there) {
+            return InferError::input(format!(
+                "{file}: `{unread}` is there without a column `{}`, in s; rename it, or leave this \
+                 time out with --use",
+                of.column()
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// What a table without any wanted observable should have, with a hint at what it has.
@@ -400,7 +425,7 @@ impl Reader<'_> {
                 "no uncertainty of this {}; expected a standard error in a column `{}_error`, or \
                  {option} for all rows",
                 of.name(),
-                of.column()
+                self.titles[columns.value]
             );
             return self.wrong(line, place, &what);
         };

@@ -429,7 +429,7 @@ fn distinct(
     };
     // Two numbers are met or not.
     let follows = |chi_square: f64| {
-        let found = ChiSquare::of(chi_square, values.saturating_sub(2).max(1));
+        let found = ChiSquare::of(chi_square, values.saturating_sub(2).max(1), 1.0);
         found.is_some_and(|found| found.probability >= LEAST_BY_CHANCE)
     };
     if free == Free::Both && !follows(best.chi_square) {

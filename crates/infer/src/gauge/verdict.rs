@@ -131,7 +131,7 @@ impl Gauge {
         let determined = fit.rank.saturating_sub(self.dry_fit.rank);
         let freedom = (fit.residuals.len() - self.dry_fit.residuals.len()).checked_sub(determined);
         let rise = self.rise(&problem, &fit);
-        let chi_square = freedom.and_then(|freedom| ChiSquare::of(rise, freedom));
+        let chi_square = freedom.and_then(|freedom| ChiSquare::of(rise, freedom, 1.0));
         Ok((problem, fit, chi_square))
     }
 
@@ -184,9 +184,15 @@ impl Gauge {
             ));
         }
         let chi_square = match joint.parameters().iter().any(|p| p.prior != Prior::Flat) {
-            false => chi_square_of(residuals.iter().copied(), own.len()),
+            false => {
+                let freedoms = fit_result.freedoms[first..].iter().copied();
+                chi_square_of(residuals.iter().copied().zip(freedoms), own.len())
+            }
             // What the wet curve makes worse: a shared error must not be pulled for nothing.
-            true => ChiSquare::of(self.rise(&joint, &fit_result), residuals.len() - own.len()),
+            true => {
+                let freedom = residuals.len() - own.len();
+                ChiSquare::of(self.rise(&joint, &fit_result), freedom, 1.0)
+            }
         };
         let Some(chi_square) = chi_square else {
             return InferError::input("its distance is not finite");

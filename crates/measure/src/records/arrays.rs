@@ -1,7 +1,7 @@
 //! Arrays of numbers, alone or several by name in one file: samples, times, rates and speeds.
 
 use crate::error::{MeasureError, Result, file_name};
-use crate::records::interval::{interval_s, seconds_assumed};
+use crate::records::interval::{interval_s, other_interval, seconds_assumed};
 use crate::records::options::{
     MOST_CHANNELS, MOST_COLUMNS, Parts, ReadOptions, Rows, ambiguous, chosen, list, numbered,
 };
@@ -17,6 +17,8 @@ pub(crate) const INTERVALS: &[&str] =
     &["dt", "interval", "interval_s", "sampling_interval", "sampling_interval_s", "tinterval"];
 pub(crate) const RATES: &[&str] =
     &["fs", "rate", "rate_hz", "sample_rate", "sample_rate_hz", "sampling_rate", "samplerate"];
+/// Two intervals that differ by more are not one that was rounded.
+const SAME: f64 = 1e-3;
 /// Name of a single number that is an interval in s, if below [`LONGEST_S`]; else of times.
 const PERIOD: &str = "ts";
 const LONGEST_S: f64 = 1.0;
@@ -93,7 +95,7 @@ impl SampleTable {
         let (rows, frames) = (size(axes.shots), shape[axes.time]);
         let names = numbered(size(axes.channels));
         let chosen = match names.len() {
-            1 => vec![0],
+            1 if options.channels.is_empty() => vec![0],
             _ => chosen(file, &names, options)?,
         };
         let are_assumed = options.rows == Rows::Auto && axes.shots == Some(1);
@@ -171,14 +173,18 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
     let first = |values: Option<Vec<f64>>| values?.first().copied();
     let step = |times: Option<Vec<f64>>| mean_step(&times?);
     let (times, times_s) = (values(TIMES)?, values(TIMES_S)?);
-    let stated_s = first(values(INTERVALS)?)
-        .or(first(values(RATES)?).map(f64::recip))
+    let of_rate_s = first(values(RATES)?).map(f64::recip);
+    let of_interval_s = first(values(INTERVALS)?);
+    let differ = |(one, other): &(f64, f64)| (one / other - 1.0).abs() > SAME;
+    let both = of_rate_s.zip(of_interval_s).filter(differ);
+    let stated_s = of_interval_s
+        .or(of_rate_s)
         .or(first(values(&[PERIOD])?.filter(|it| it.len() == 1 && it[0] < LONGEST_S)))
         .or_else(|| arrays.stated_s())
         .or(step(times_s));
     let mut note = match (stated_s, of(TIMES)) {
         (None, Some(name)) => seconds_assumed(name, None, options),
-        _ => None,
+        _ => both.map(|(rate, interval)| other_interval(rate, interval)),
     };
     let unit_s = options.time_unit_s.unwrap_or(1.0);
     let mut interval = stated_s.or(step(times).map(|step| step * unit_s));

@@ -80,6 +80,10 @@ pub(crate) fn from_times(
         return Ok(SampleInterval::exact(stated_s));
     }
     if times.least_s <= 0.0 {
+        if middle_s < 0.0 {
+            let detail = "its times fall; expected times that rise".to_owned();
+            return Err(MeasureError::Rate(file_name(file), detail));
+        }
         let detail = format!(
             "its times go by steps of {:.3} µs, too coarse to show how fast it was sampled; give \
              the rate, such as --rate 1MHz",
@@ -92,7 +96,9 @@ pub(crate) fn from_times(
     // The range is a uniform distribution.
     let off_s = (times.most_s - s).max(s - times.least_s);
     let error_s = off_s / 3.0_f64.sqrt();
-    let note = (error_s > NOTED * s).then(|| coarse(times, s, off_s, round_s.is_some()));
+    let coarse = (error_s > NOTED * s).then(|| coarse(times, s, off_s, round_s.is_some()));
+    let stated_s = stated_s.filter(|stated_s| *stated_s > 0.0);
+    let note = coarse.or_else(|| stated_s.map(|stated_s| other_interval(stated_s, s)));
     Ok(SampleInterval { s: interval_s(file, Some(s), options)?, error_s, note })
 }
 
@@ -115,6 +121,15 @@ impl FromTimes {
 
 fn to_digits(value: f64, more: usize) -> f64 {
     format!("{value:.more$e}").parse().unwrap_or(f64::NAN)
+}
+
+/// The note on two intervals that a file states.
+pub(crate) fn other_interval(stated_s: f64, taken_s: f64) -> String {
+    let [stated_us, taken_us] = [stated_s, taken_s].map(|s| to_digits(1e6 * s, 4));
+    format!(
+        "it states an interval between samples of {stated_us} µs and one of {taken_us} µs, which was \
+         taken; --rate decides"
+    )
 }
 
 /// The note on times of few digits. The share has one digit, so that similar records share it.

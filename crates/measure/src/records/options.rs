@@ -29,6 +29,10 @@ impl ReadOptions {
             {
                 Rows::Moments
             }
+            // Channels can only be chosen where there are some.
+            (Rows::Auto, &[rows, columns]) if rows <= columns && !self.channels.is_empty() => {
+                Rows::Channels
+            }
             (rows, _) => rows,
         }
     }

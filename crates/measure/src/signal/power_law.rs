@@ -199,7 +199,7 @@ impl LogPoints {
             exponent_error: spread.recip().sqrt(),
             covariance: -centre / spread,
             r_squared: if total > 0.0 { 1.0 - left / total } else { 1.0 },
-            chi_square: ChiSquare::of(left, residuals.len() - 2),
+            chi_square: ChiSquare::of(left, residuals.len() - 2, 1.0),
             residuals,
         }
     }

@@ -150,17 +150,18 @@ pub fn chi_square(measured: &[Estimate], expected: &[f64], fit_result: usize) ->
     }
     let pairs = measured.iter().zip(expected);
     let squares = pairs.map(|(m, expected)| ((m.value - expected) / m.sigma).powi(2));
-    ChiSquare::of(squares.sum(), freedom)
+    ChiSquare::of(squares.sum(), freedom, 1.0)
 }
 
 impl ChiSquare {
-    /// A sum of squares of normal deviates with its probability; `None` if it is not finite or no
-    /// degree of freedom is left.
-    pub fn of(value: f64, freedom: usize) -> Option<Self> {
+    /// A sum of squares of deviates with its probability; `None` if it is not finite or no degree of
+    /// freedom is left. The squares have mean 1 and `spread` times the variance of those of normal
+    /// deviates, and their sum is taken for a multiple of a chi-square variable [Satterthwaite1946].
+    pub fn of(value: f64, freedom: usize, spread: f64) -> Option<Self> {
         (value.is_finite() && freedom > 0).then(|| Self {
             value,
             freedom,
-            probability: upper_gamma(0.5 * freedom as f64, 0.5 * value),
+            probability: upper_gamma(0.5 * freedom as f64 / spread, 0.5 * value / spread),
         })
     }
 }

@@ -33,7 +33,7 @@ fn means_are_correlated_by_the_share_of_the_walls_pick() {
     assert!(all.iter().all(|pairs| (pairs.picking + 0.05).abs() < 1e-15));
     // Of either mean: 2/20. A covariance of 20 shots scatters by 0.25 of that, 1000 of them by 1 %.
     let error = (2.0_f64 / 20.0).sqrt();
-    let plain = mean(all.iter().filter_map(|pairs| pairs.of_means([error; 2])));
+    let plain = mean(all.iter().filter_map(|pairs| pairs.of_means([error; 2], 0.0)));
     assert!((plain + 0.5 * 18.0 / 19.0).abs() < 0.03, "{plain}");
     // Where no more scatters than picks do, nothing is added to what is known of them.
     assert!(all.iter().all(|pairs| pairs.excess(0.0, [0.0; 2]) == 0.0));
@@ -57,5 +57,5 @@ fn shots_without_a_return_dilute_the_correlation() {
     // −1 of ten pairs over 10 · 20.
     assert!(all.iter().all(|pairs| (pairs.picking + 0.05).abs() < 1e-15));
     let two = groups(0.0, 2);
-    assert!(two.iter().all(|pairs| pairs.of_means([0.3; 2]) == Some(0.0)));
+    assert!(two.iter().all(|pairs| pairs.of_means([0.3; 2], 0.0) == Some(0.0)));
 }

@@ -56,9 +56,11 @@ pub(super) fn linear_waves(chain: &Chain, system: &System) -> Option<Group> {
     } else if is_dimer(beads) {
         dimer(&mut group, beads, [stiffness(middle), stiffness((middle + 1).min(beads.len()))]);
     } else {
-        let slowness = |c: usize| (beads[c - 1].mass_kg / stiffness(c)).sqrt();
-        let time: f64 = inner.clone().map(slowness).sum();
-        group.number("sound speed, mean", inner.len() as f64 / time, "beads/s");
+        let mass_kg = beads.iter().map(|bead| bead.mass_kg).sum::<f64>() / beads.len() as f64;
+        let compliances = inner.clone().map(|c| stiffness(c).recip());
+        let compliance_m_n = compliances.sum::<f64>() / inner.len() as f64;
+        let speed = (mass_kg * compliance_m_n).sqrt().recip();
+        group.number("sound speed, by mean mass and mean compliance", speed, "beads/s");
     }
     Some(group)
 }

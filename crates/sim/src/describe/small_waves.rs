@@ -54,12 +54,20 @@ pub(super) fn modes(chain: &Chain, system: &System) -> Option<Group> {
         group.text("modes", format!("not computed for more than {MOST_BEADS} beads"));
         return springs.then_some(group);
     }
+    // Threads add g/L to the squares of all frequencies where all bodies hang.
+    let swing_rad_s = chain.suspension_m.map_or(0.0, |m| (chain.gravity_m_s2 / m).sqrt());
+    if swing_rad_s > 0.0 && masses.len() > chain.beads.len() {
+        group.text("modes", "not computed for threads beside a stop of finite mass");
+        return Some(group);
+    }
     let modes = normal_modes(&masses, &stiffnesses, ends).ok()?;
-    let highest_rad_s = modes.last()?.angular_frequency_rad_s;
+    let modes = modes.into_iter().map(|mode| mode.angular_frequency_rad_s.hypot(swing_rad_s));
+    let modes: Vec<f64> = modes.collect();
+    let highest_rad_s = *modes.last()?;
     let shown = |i: usize| i < SHOWN || i + SHOWN >= modes.len();
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| shown(*i)) {
         let name = format!("mode {} of {}", i + 1, modes.len());
-        match mode.angular_frequency_rad_s {
+        match *mode {
             shift if shift < SHIFT * highest_rad_s => group.text(name, "a shift of all bodies"),
             rad_s => group.number(name, rad_s / TAU, "Hz"),
         }
@@ -71,7 +79,8 @@ pub(super) fn modes(chain: &Chain, system: &System) -> Option<Group> {
 const SHIFT: f64 = 1e-10;
 
 /// What holds the ends, the bodies' masses in kg, and the springs between them in N/m. A striker leans
-/// on nothing, a stop of finite mass is a body, and a spring that pushes is one to a fixed end.
+/// on nothing, a stop of finite mass is a body, and a spring that pushes is one to a fixed end, of no
+/// stiffness if it does not push at rest, for it never pulls.
 fn springs(chain: &Chain, system: &System) -> (Ends, Vec<f64>, Vec<f64>) {
     let last = chain.beads.len();
     let mut masses: Vec<f64> = chain.beads.iter().map(|bead| bead.mass_kg).collect();
@@ -87,7 +96,9 @@ fn springs(chain: &Chain, system: &System) -> (Ends, Vec<f64>, Vec<f64>) {
     };
     let near = match (driven, chain.push) {
         (true, _) => Some(system.static_contact(0).stiffness_n_m),
-        (false, Push::Spring { stiffness_n_m, .. }) => Some(stiffness_n_m),
+        (false, Push::Spring { stiffness_n_m, force_n }) => {
+            Some(if force_n > 0.0 { stiffness_n_m } else { 0.0 })
+        }
         (false, Push::None | Push::Constant { .. }) => None,
     };
     let contacts = (1..=last_contact).map(|contact| system.static_contact(contact).stiffness_n_m);

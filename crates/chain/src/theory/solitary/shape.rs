@@ -116,6 +116,21 @@ impl SolitaryShape {
         0.5 * (self.force(x - 0.5) + self.force(x + 0.5))
     }
 
+    /// Largest value of [`Self::sensor`], by golden sections of the bead's own way: one hump is there.
+    pub(crate) fn sensor_peak(&self) -> f64 {
+        const SECTIONS: usize = 40;
+        let share = 0.5 * (5f64.sqrt() - 1.0);
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..SECTIONS {
+            let reach = share * (high - low);
+            match self.sensor(high - reach) < self.sensor(low + reach) {
+                true => low = high - reach,
+                false => high = low + reach,
+            }
+        }
+        self.sensor(low).max(self.sensor(0.0))
+    }
+
     /// Full width at half maximum of the contact force, beads.
     pub fn force_width_beads(&self) -> f64 {
         self.width(|x| self.force(x))

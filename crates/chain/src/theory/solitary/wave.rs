@@ -113,9 +113,9 @@ impl<'shape> SolitaryWave<'shape> {
         self.stiffness * self.peak_overlap_m.powf(self.shape.exponent())
     }
 
-    /// Bead sensor's signal as the wave's centre passes the bead, N: its peak up to n = 1.75.
+    /// Peak of a bead sensor's signal, N.
     pub fn peak_sensor_force_n(&self) -> f64 {
-        self.peak_force_n() * self.shape.sensor(0.0)
+        self.peak_force_n() * self.shape.sensor_peak()
     }
 
     /// Largest bead speed v_m, m/s.

@@ -247,7 +247,7 @@ fn line_text(shot: &Shot, place: Option<(&Case, &SpeedRow)>, keep_dubious: bool)
         reasons.map_or(String::new(), |codes| format!("  not counted: {}", codes.join(" ")));
     let mut text = format!("{}{speed}  {times}{flags}{reasons}\n", name(shot));
     if let Some((case, row)) = place {
-        let mean = summary::mean(&row.incident_s, row.shared_s[0]);
+        let mean = summary::mean(&row.incident_s);
         let (shots, speed) = (row.shots.0, format::digits(row.speed_m_s.value, 4));
         let named = summary::named(&case.name);
         text += &format!("  mean {mean} µs of {shots} ({named}, {speed} m/s)\n");

@@ -212,16 +212,16 @@ fn goodness(goodness: &Goodness) -> String {
     let largest = goodness.largest.as_ref();
     let largest =
         largest.map(|of| format!("largest residual: {} σ ({})", digits(of.sigmas, 2), of.label));
-    let all = std::iter::once(chi_square_text(chi_square)).chain(runs).chain(largest);
+    let outliers =
+        (goodness.outliers > 0).then(|| format!("{} outliers left out", goodness.outliers));
+    let all =
+        std::iter::once(chi_square_text(chi_square)).chain(outliers).chain(runs).chain(largest);
     all.collect::<Vec<_>>().join("; ") + "\n"
 }
 
-/// The runs test, by the tail on whose side the number of runs of equal sign is.
+/// The runs test: the probability of a number of runs as unlikely in either direction.
 fn runs_text(runs: Runs) -> String {
-    let probability = match (runs.count as f64) <= runs.expected {
-        true => runs.probability_fewer,
-        false => runs.probability_more,
-    };
+    let probability = (2.0 * runs.probability_fewer.min(runs.probability_more)).min(1.0);
     let (count, expected) = (runs.count, digits(runs.expected, 3));
     format!("runs test: {} ({count} runs, {expected} expected)", p_value(probability))
 }

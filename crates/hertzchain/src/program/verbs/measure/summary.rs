@@ -65,11 +65,9 @@ pub(crate) fn micro(of: Estimate) -> String {
     format!("{value} ± {error}")
 }
 
-/// A mean time in µs with what all its shots share, which no scatter shows; one shot's own error
-/// holds it.
-pub(crate) fn mean(of: &Summary, shared_s: f64) -> String {
-    let shared_s = if of.count > 1 { shared_s } else { 0.0 };
-    micro(Estimate { value: of.mean, sigma: of.error.hypot(shared_s) })
+/// A mean time in µs.
+pub(crate) fn mean(of: &Summary) -> String {
+    micro(Estimate { value: of.mean, sigma: of.error })
 }
 
 fn shots(shots: &[Shot]) -> String {
@@ -122,9 +120,7 @@ fn curve(case: &Case) -> String {
         "wall/incident",
         "reflected/incident",
     ];
-    let mean = |summary: Option<Summary>, shared_s: f64| {
-        summary.map_or(String::new(), |summary| mean(&summary, shared_s))
-    };
+    let mean = |summary: Option<Summary>| summary.map_or(String::new(), |summary| mean(&summary));
     let deviation = |summary: Option<Summary>| {
         let known = summary.map(|s| s.deviation).filter(|s| s.is_finite());
         known.map_or(String::new(), |s| format::digits(1e6 * s, 2))
@@ -135,9 +131,9 @@ fn curve(case: &Case) -> String {
         vec![
             format::digits(row.speed_m_s.value, 4),
             counts(row),
-            mean(Some(row.incident_s), row.shared_s[0]),
+            mean(Some(row.incident_s)),
             deviation(Some(row.incident_s)),
-            mean(row.reflected_s, row.shared_s[1]),
+            mean(row.reflected_s),
             deviation(row.reflected_s),
             share(Some(row.wall_over_incident)),
             share(row.reflected_over_incident),
