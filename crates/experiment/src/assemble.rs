@@ -38,6 +38,7 @@ pub(crate) fn chain(
     }
     warnings.extend(inelastic(spec));
     warnings.extend(closed_gaps(spec));
+    warnings.extend(films(spec));
     let mut chain = Chain {
         start: start(spec, speed_m_s, first, &materials)?,
         far: far(&spec.far, last, &materials),
@@ -205,11 +206,39 @@ fn inelastic(spec: &Spec) -> impl Iterator<Item = FileProblem> {
     })
 }
 
-/// A warning for gaps in contacts that are pressed together at rest.
-fn closed_gaps(spec: &Spec) -> impl Iterator<Item = FileProblem> {
+/// Whether contacts between beads are pressed together at rest.
+fn is_pressed(spec: &Spec) -> bool {
     let ring = matches!(spec.far, Far::Periodic { force_n } if force_n > 0.0);
     let weighs = spec.incline_rad > 0.0 && spec.gravity_m_s2 > 0.0;
-    let pressed = ring || weighs || spec.push.force_n() > 0.0;
+    ring || weighs || spec.push.force_n() > 0.0
+}
+
+/// A warning for films in contacts that start otherwise than the law is for.
+fn films(spec: &Spec) -> impl Iterator<Item = FileProblem> {
+    let pressed = is_pressed(spec);
+    let laws =
+        spec.sections.iter().flat_map(|section| section.laws.iter().map(move |law| (section, law)));
+    laws.filter_map(move |(section, law)| {
+        let contacts = section.from..=section.last(spec.bead_count());
+        let gap = spec.gaps.iter().any(|(gap, _)| gap.gap_m > 0.0 && contacts.contains(&gap.contact));
+        let (message, label) = match (law.name(), gap, pressed) {
+            ("film_drained", _, true) => (
+                "`film_drained` is for beads that start apart, and these are pressed together at rest",
+                "it acts only once a contact has opened",
+            ),
+            ("film_entrained", true, false) => (
+                "`film_entrained` is for beads that touch or are pressed, and here is a gap",
+                "oil in the gap resists nothing before touch",
+            ),
+            _ => return None,
+        };
+        Some(FileProblem::new(&law.span, message, label))
+    })
+}
+
+/// A warning for gaps in contacts that are pressed together at rest.
+fn closed_gaps(spec: &Spec) -> impl Iterator<Item = FileProblem> {
+    let pressed = is_pressed(spec);
     let gaps = spec.gaps.iter().filter(move |_| pressed);
     let closed = gaps.filter(|(gap, _)| gap.contact > 0 && gap.gap_m > 0.0);
     closed.map(|(gap, span)| {
