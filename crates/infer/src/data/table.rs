@@ -199,11 +199,11 @@ impl Columns {
             });
             found.filter(|_| wanted.contains(&of))
         });
-        unclear(titles, wanted, file)?;
         if observables.iter().all(Option::is_none) {
             let names: Vec<&str> = wanted.iter().map(|of| of.column()).collect();
             return Err(missing(&names.join("` or `"), instead(titles, wanted)));
         }
+        unclear(titles, wanted, file)?;
         let incident = observables[0].as_ref().map(|of| titles[of.value].as_str());
         let correlations = match incident == Some(AT_MEAN_SPEED[0]) {
             false => &CORRELATIONS[..1],

@@ -290,7 +290,8 @@ fn of_samples(
     // Columns of an array that is itself chosen are not chosen from.
     let free = ReadOptions { channels: Vec::new(), ..options.clone() };
     if let [one] = samples.as_slice() {
-        let options = match options.channels.contains(one) {
+        let is_it = |channel: &String| channel == one || channel == last(one);
+        let options = match options.channels.iter().any(is_it) {
             true => &free,
             false => options,
         };
@@ -324,7 +325,7 @@ fn of_samples(
             return Err(ambiguous(file, &samples));
         }
     }
-    let recordings = chosen.first().map(|name| rows(&**arrays, name, options));
+    let recordings = chosen.first().map(|name| rows(&**arrays, name, &free));
     let recordings = recordings.unwrap_or(Ok(0))?;
     let records = side_by_side(arrays, &chosen, interval_s, &free)?;
     Ok((records, recordings))

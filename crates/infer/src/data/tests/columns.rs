@@ -36,6 +36,16 @@ fn a_missing_column_is_told_with_what_is_there_instead() {
 }
 
 #[test]
+fn a_time_in_another_unit_and_a_column_twice_are_not_left_out_without_a_word() {
+    let reported = |text: &str| Columns::of(&titles(text), &Observable::ALL, "a.csv").map(|_| ());
+    let other = reported("speed_m_s,tof_incident_us,tof_reflected_s").unwrap_err().to_string();
+    assert!(other.contains("`tof_incident_us` is there without"), "{other}");
+    let twice = reported("speed_m_s,tof_incident_s,tof_incident_s").unwrap_err().to_string();
+    assert!(twice.contains("stands there twice"), "{twice}");
+    assert!(reported("speed_m_s,tof_incident_s,tof_incident_s_error").is_ok());
+}
+
+#[test]
 fn times_at_the_mean_speed_are_read_before_means_that_scatter_with_speeds() {
     let text = "speed_m_s,tof_incident_s,tof_incident_s_error,\
                 tof_incident_at_mean_speed_s,tof_incident_at_mean_speed_s_error";

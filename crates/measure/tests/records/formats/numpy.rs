@@ -96,11 +96,30 @@ fn rows_are_channels_if_told() {
     if python(&folder, &program).is_none() {
         return;
     }
-    let options =
-        ReadOptions { rows: Rows::Channels, channels: vec!["2".to_owned()], ..at_1_mhz() };
-    let records = all(&folder.join("a.npy"), &options);
-    assert_eq!(records.len(), 1);
-    assert_wave(&records[0], 0, 1, 1.0);
+    // A channel that is chosen says so, too.
+    for rows in [Rows::Channels, Rows::Auto] {
+        let options = ReadOptions { rows, channels: vec!["2".to_owned()], ..at_1_mhz() };
+        let records = all(&folder.join("a.npy"), &options);
+        assert_eq!(records.len(), 1);
+        assert_wave(&records[0], 0, 1, 1.0);
+    }
+    for (rows, channel) in [(Rows::Auto, "3"), (Rows::Shots, "2")] {
+        let options = ReadOptions { rows, channels: vec![channel.to_owned()], ..at_1_mhz() };
+        let error = read(&folder.join("a.npy"), &options).find_map(Result::err).unwrap();
+        assert!(error.to_string().contains("has no channel"), "{error}");
+    }
+}
+
+#[test]
+fn two_intervals_of_one_file_are_noted() {
+    let folder = folder("two-intervals");
+    let program = WAVE.to_owned() + "numpy.savez('a.npz', samples=wave(0), fs=1e6, dt=2e-6)\n";
+    if python(&folder, &program).is_none() {
+        return;
+    }
+    let records = all(&folder.join("a.npz"), &ReadOptions::default());
+    assert_eq!(records[0].interval_s, 2e-6);
+    assert!(records[0].notes.iter().any(|note| note.contains("of 1 µs and one of 2 µs")));
 }
 
 #[test]
