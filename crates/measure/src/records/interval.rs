@@ -128,7 +128,7 @@ pub(crate) fn other_interval(stated_s: f64, taken_s: f64) -> String {
     let [stated_us, taken_us] = [stated_s, taken_s].map(|s| to_digits(1e6 * s, 4));
     format!(
         "it states an interval between samples of {stated_us} µs and one of {taken_us} µs, which was \
-         taken; --rate decides"
+         taken; --rate with --trust-rate takes another"
     )
 }
 
