@@ -175,7 +175,8 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
     let (times, times_s) = (values(TIMES)?, values(TIMES_S)?);
     let of_rate_s = first(values(RATES)?).map(f64::recip);
     let of_interval_s = first(values(INTERVALS)?);
-    let differ = |(one, other): &(f64, f64)| (one / other - 1.0).abs() > SAME;
+    let differ =
+        |(one, other): &(f64, f64)| options.rate_hz.is_none() && (one / other - 1.0).abs() > SAME;
     let both = of_rate_s.zip(of_interval_s).filter(differ);
     let stated_s = of_interval_s
         .or(of_rate_s)

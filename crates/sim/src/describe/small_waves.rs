@@ -68,7 +68,7 @@ pub(super) fn modes(chain: &Chain, system: &System) -> Option<Group> {
     for (i, mode) in modes.iter().enumerate().filter(|(i, _)| shown(*i)) {
         let name = format!("mode {} of {}", i + 1, modes.len());
         match *mode {
-            shift if shift < SHIFT * highest_rad_s => group.text(name, "a shift of all bodies"),
+            shift if shift <= SHIFT * highest_rad_s => group.text(name, "a shift of all bodies"),
             rad_s => group.number(name, rad_s / TAU, "Hz"),
         }
     }

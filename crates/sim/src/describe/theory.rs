@@ -88,9 +88,9 @@ pub(super) fn restitution(chain: &Chain) -> Result<Option<Group>, StudyError> {
     match laws.laws.iter().all(elastic) {
         true => group.number(name, 1.0, ""),
         false => match parting_speed_m_s(pair)? {
-            Ok(speed) => group.number(name, speed / speed_m_s, ""),
-            Err(s) => {
-                group.text(name, format!("none: the balls still act on each other after {s:.3e} s"))
+            Some(speed) => group.number(name, speed / speed_m_s, ""),
+            None => {
+                group.text(name, "none: forces still act across the gap long after the collision")
             }
         },
     }
@@ -112,11 +112,11 @@ pub(super) fn restitution(chain: &Chain) -> Result<Option<Group>, StudyError> {
     Ok(Some(group))
 }
 
-/// Speed in m/s at which two balls part; the time in s until which they have not, where forces act on.
-fn parting_speed_m_s(pair: Chain) -> Result<Result<f64, f64>, StudyError> {
-    /// Most doublings of the time of a collision after which laws that act across gaps are done.
+/// Speed in m/s at which two balls part; `None` where forces across their gap act on and on.
+fn parting_speed_m_s(pair: Chain) -> Result<Option<f64>, StudyError> {
+    /// Most shots, each twice as long as the one before.
     const MOST: usize = 10;
-    /// A speed that changes by less of the impact's is final.
+    /// A speed that changes by a smaller share in twice the time is final.
     const FINAL: f64 = 1e-8;
     let mut plan = Plan::new(pair, 1).with_accuracy(1e-9);
     let mut before = f64::INFINITY;
@@ -124,12 +124,12 @@ fn parting_speed_m_s(pair: Chain) -> Result<Result<f64, f64>, StudyError> {
         let shot = shoot(&plan)?;
         let speed_m_s = shot.velocity_m_s[1] - shot.velocity_m_s[0];
         if (speed_m_s - before).abs() < FINAL * speed_m_s.abs() {
-            return Ok(Ok(speed_m_s));
+            return Ok(Some(speed_m_s));
         }
         before = speed_m_s;
         plan.duration_s = Some(2.0 * shot.duration_s);
     }
-    Ok(Err(plan.duration_s.unwrap_or_default()))
+    Ok(None)
 }
 
 /// The striker's collision by its Hertz and viscoelastic terms.
