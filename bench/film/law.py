@@ -7,21 +7,20 @@ punch's shape, so that with V(a) = ∫ H ds
 
 and the rim y, an overlap that the oil at the edge still has to give way to, relaxes as an inlet of speed ȧ would:
 
-    ẏ = δ̇ − (2E*/η) (κ a |y| / (c R^1.4))^{5/3} sign(y) − y ȧ/(2a),
+    ẏ = δ̇ − (2E*/η) (κ a y / (c R^1.4 (R y/a²)^g))^{5/3} − y ȧ/(2a) where y > 0; oil that is drawn cavitates: y = 0.
 
-with c = c₊ for y > 0 (squeezed) and c₋ for y < 0 (drawn). At a steady rate κ y = c (η δ̇/(2E*))^0.6 R^1.4/a = c times the inlet film
-(η ȧ/E*)^0.6 R^0.8 a^−0.4. The last term keeps the energy E* κ a y² of the rim from growing with a alone.
-An oil that thickens with pressure, η exp(α p), leaves more film and squeezes out less: with G(x) = x/(1 − e^−x), x = α k E* (a H/R²)^{1/3} (the
-pressure of an inlet of film H), β becomes β G^n and η becomes η G^m for y > 0.
+At a steady rate κ y = c (η δ̇/(2E*))^0.6 R^1.4/a (R y/a²)^g: with g = 0, c times the inlet film (η ȧ/E*)^0.6 R^0.8 a^−0.4; a rim that is narrow beside
+the contact resists less. The last term keeps the energy E* κ a y² of the rim from growing with a alone.
+An oil that thickens with pressure, η exp(α p), leaves more film and squeezes out less: with G(x) = x/(1 − e^−x), x = α k E* (β a y/R²)^{1/3} (the
+pressure of an inlet of such a film), β becomes β G^n and η becomes η G^m (1 + l α E* a/R), the last by the pressure in the contact.
 Energy: F δ̇ = d/dt {E* ∫ (δ − s²/R + H)² ds + E* κ a y²} + 2 E* κ a y (2E*/η) (...)^{5/3}, whose last part is never negative.
 """
 
 import numpy as np
 from numba import njit
 
-# c₊, c₋, β, κ; k, m, n. Pure numbers, the same for every contact, fitted to contact.py alone: the first four over pulses of 1.5 to 12 µm in oils
-# of 0.048 to 0.119 Pa s, the others over the same with α of 4 to 20 1/GPa.
-CONSTANTS = (3.47, 0.185, 2.04, 2.41, 1.262, -0.159, 0.6045)
+# c, β, κ, g; k, m, n, l. Pure numbers, the same for every contact, fitted to contact.py alone by fit.py.
+CONSTANTS = (3.887, 0.4416, 0.6543, 0.04487, 2.266, -0.1592, 0.5735, 0.005603)
 # Where the numbers of one contact's state are.
 RADIUS_A, RIM, OVERLAP, DISSIPATED = range(4)
 
@@ -35,36 +34,40 @@ def at(values, a, width):
 
 
 @njit
-def relaxed(trial, dt, speed):
-    """y with y + dt · speed · |y|^{5/3} sign(y) = trial, by Newton from the side on which it converges monotonically."""
-    goal = abs(trial)
-    y = goal
+def relaxed(trial, dt, speed, power):
+    """y with y + dt · speed · y^power = trial, by Newton from the side on which it converges monotonically."""
+    y = trial
     for _ in range(50):
-        rate = dt * speed * y ** (2 / 3)
-        change = (y + rate * y - goal) / (1 + 5 / 3 * rate)
+        rate = dt * speed * y ** (power - 1)
+        change = (y + rate * y - trial) / (1 + power * rate)
         y -= change
-        if change <= 1e-14 * goal:
+        if change <= 1e-14 * trial:
             break
-    return np.sign(trial) * y
+    return y
 
 
 @njit
 def law_step(state, film, volume, law, dt, overlap):
-    """Moves one contact to a new overlap over `dt`; returns its force. `law` = (R, E*, η, c₊, c₋, β, κ, width of nodes)."""
-    radius, modulus, viscosity, squeezed, drawn, beta, kappa, width, alpha, inlet, rise, thickening = law
+    """Moves one contact to a new overlap over `dt`; returns its force."""
+    radius, modulus, viscosity, alpha, width, (squeezed, beta, kappa, narrow, inlet, rise, thickening, deep) = law
     a = max(state[RADIUS_A], 1e-3 * width)
     trial = state[RIM] + overlap - state[OVERLAP]
-    c = squeezed if trial > 0 else drawn
-    if alpha > 0 and trial > 0:
-        x = alpha * inlet * modulus * (a * beta * trial / radius**2) ** (1 / 3)
-        stiff = x / -np.expm1(-x) if x > 1e-9 else 1.0
-        viscosity *= stiff**rise
-        beta *= stiff**thickening
-    speed = 2 * modulus / viscosity * (kappa * a / (c * radius**1.4)) ** (5 / 3)
-    y = relaxed(trial, dt, speed)
+    y, stiff = 0.0, 1.0
+    if trial > 0:
+        thick = viscosity * (1 + deep * alpha * modulus * a / radius)
+        speed = 2 * modulus / thick * (kappa * a / (squeezed * radius**1.4) * (a**2 / radius) ** narrow) ** (5 / 3)
+        power = 5 / 3 * (1 - narrow)
+        y = relaxed(trial, dt, speed, power)
+        # A contraction: y falls with G^m by less than G falls with y.
+        for _ in range(20 if alpha > 0 else 0):
+            x = alpha * inlet * modulus * (a * beta * y / radius**2) ** (1 / 3)
+            before, stiff = stiff, x / -np.expm1(-x) if x > 1e-9 else 1.0
+            y = relaxed(trial, dt, speed * stiff**-rise, power)
+            if abs(stiff - before) < 1e-10:
+                break
     state[DISSIPATED] += 2 * modulus * kappa * a * y * (trial - y)
     state[OVERLAP] = overlap
-    move_edge(state, film, volume, radius, overlap, beta * max(y, 0.0), width)
+    move_edge(state, film, volume, radius, overlap, beta * stiff**thickening * y, width)
     # Where nothing touches any more, the rim is gone with its energy.
     state[RIM] = y * np.sqrt(min(1.0, a / max(state[RADIUS_A], 1e-3 * width))) if state[RADIUS_A] > 0 else 0.0
     return law_force(state, volume, law)
@@ -101,7 +104,7 @@ def move_edge(state, film, volume, radius, overlap, fresh, width):
 @njit
 def law_force(state, volume, law):
     """Force of one contact as it is."""
-    radius, modulus, kappa, width = law[0], law[1], law[6], law[7]
+    radius, modulus, kappa, width = law[0], law[1], law[5][2], law[4]
     a = state[RADIUS_A]
     spacer = a * state[OVERLAP] - a**3 / (3 * radius) + at(volume, a, width)
     return 2 * modulus * (spacer + kappa * a * state[RIM])
@@ -112,7 +115,7 @@ class FilmLaw:
 
     def __init__(self, radius, modulus, viscosity, largest, alpha=0.0, constants=CONSTANTS, nodes=400):
         width = np.sqrt(radius * largest * 1.5) / nodes
-        self.law = (radius, modulus, viscosity, *constants[:4], width, alpha, *constants[4:])
+        self.law = (radius, modulus, viscosity, alpha, width, tuple(constants))
         self.s = width * np.arange(nodes + 1)
         self.film, self.volume = np.zeros(nodes + 1), np.zeros(nodes + 1)
         self.state = np.zeros(4)
@@ -138,4 +141,4 @@ class FilmLaw:
         inside = self.s < a
         part = np.append((overlap - self.s**2 / self.law[0] + self.film)[inside] ** 2, 0.0)
         ends = np.append(self.s[inside], a)
-        return self.law[1] * (np.sum(0.5 * (part[1:] + part[:-1]) * np.diff(ends)) + self.law[6] * a * y**2)
+        return self.law[1] * (np.sum(0.5 * (part[1:] + part[:-1]) * np.diff(ends)) + self.law[5][2] * a * y**2)
