@@ -80,22 +80,19 @@ fn forces_and_loss_of_one_contact_match_another_program() {
             .collect();
         apart.sort_by(f64::total_cmp);
         let last = apart.len() - 1;
-        // Most, 1e-5, where a contact is pressed again: radii of the other program's film are
+        // Most, 7e-6, where a contact is pressed again: radii of the other program's film are
         // multiples of a width.
-        assert!(apart[last - 1] < 3e-5, "{apart:?} {case}");
-        // One sample is where a drawn contact comes to rest: the other program's rim is not a
-        // dashpot and still relaxes.
-        assert!(apart[last] < 3e-4, "{apart:?} {case}");
+        assert!(apart[last] < 1e-5, "{apart:?} {case}");
         // Where the edge is drawn back, the other program keeps the rim's overlap, not its energy.
         close(loss_j(&outcome.budget.unwrap()), number(&case, "loss_j"), 1e-4);
     }
 }
 
 #[test]
-fn a_drawn_contact_resists_by_the_power_three_fifths_of_its_speed() {
-    let (static_n, amplitude_m, frequency_hz, viscosity_pa_s) = (20.0, -1e-6, 1e4, 0.1);
+fn a_drawn_contact_is_that_of_hertz() {
+    let (static_n, amplitude_m, frequency_hz) = (20.0, -1e-6, 1e4);
     let motion = Motion::Sine { amplitude_m, frequency_hz };
-    let chain = pressed(static_n, film(viscosity_pa_s, 15e-9), motion);
+    let chain = pressed(static_n, film(0.1, 15e-9), motion);
     let (samples, quarter_s) = (20, 0.25 / frequency_hz);
     let (trace, _) = trace(&chain, 1e-10, quarter_s, samples);
     // Two equal balls of steel.
@@ -104,11 +101,8 @@ fn a_drawn_contact_resists_by_the_power_three_fifths_of_its_speed() {
     for (i, force) in trace.columns[0].iter().enumerate().take(samples).skip(1) {
         let phase = 0.5 * std::f64::consts::PI * i as f64 / samples as f64;
         let overlap_m = (static_n / stiffness).powf(2.0 / 3.0) + amplitude_m * phase.sin();
-        let speed_m_s = -amplitude_m * std::f64::consts::TAU * frequency_hz * phase.cos();
         // Nothing was squeezed before: the edge is Hertz's.
-        let drawn =
-            0.185 * radius_m.powf(1.4) * (0.5 * viscosity_pa_s * speed_m_s / modulus_pa).powf(0.6);
-        let expected = stiffness * overlap_m.powf(1.5) - 2.0 * modulus_pa * drawn - static_n;
+        let expected = stiffness * overlap_m.powf(1.5) - static_n;
         // Dense output of the overlap.
         assert!((force - expected).abs() < 1e-7 * static_n, "{force} {expected} at {i}");
     }
@@ -134,10 +128,9 @@ fn rows_with_oil_match_another_program() {
         let chain = oily_row(number(&case, "speed_m_s"), Some(film_of(&case)));
         let (passage, outcome) = shoot(&chain, 1e-8);
         // The other program's times are extrapolated from Verlet steps of first order and joined
-        // by parabolas; its film is on nodes: 1.5e-6. Its drawn rim relaxes as the squeezed one
-        // does: some 10 ns, 3e-6 of a time at 0.075 m/s.
-        close(passage.tof_incident_s(), number(&case, "tof_s"), 5e-6);
-        close(passage.wall.value + 0.24, number(&case, "wall_n"), 1e-5);
+        // by parabolas; its film is on nodes: 1.5e-6.
+        close(passage.tof_incident_s(), number(&case, "tof_s"), 1.5e-6);
+        close(passage.wall.value + 0.24, number(&case, "wall_n"), 5e-6);
         let budget = outcome.budget.unwrap();
         assert!(loss_j(&budget) > 0.3 * budget.start_j, "{budget:?}");
         // Three times the tolerance of a step.
@@ -244,7 +237,7 @@ fn short_row(volume_m3: f64) -> (Passage, Outcome) {
         ],
         ..common::row(12, 0.3, vec![])
     };
-    shoot(&chain, 1e-8)
+    shoot(&chain, 3e-9)
 }
 
 #[test]
@@ -262,7 +255,7 @@ fn a_row_that_traps_all_its_oil_takes_about_twice_the_work_at_most() {
 fn a_time_of_flight_is_smooth_in_the_volume_and_ends_at_the_dry_one() {
     let tof_s = |volume_m3| short_row(volume_m3).0.tof_incident_s();
     let (dry_s, flooded_s) = (tof_s(0.0), tof_s(f64::INFINITY));
-    for (volume_m3, relative) in [(1e-16, 5e-4), (1e-18, 1e-4), (1e-20, 1e-5)] {
+    for (volume_m3, relative) in [(1e-16, 6e-4), (1e-18, 1e-4), (1e-20, 1e-5)] {
         close(tof_s(volume_m3), dry_s, relative);
     }
     close(tof_s(1e-9), flooded_s, 2e-5);
@@ -291,17 +284,18 @@ fn limited_oil_loses_what_the_whole_contact_loses() {
         let (trace, outcome) = trace(&chain, 1e-9, duration_s, expected.len());
         let peak_n = expected.iter().copied().fold(0.0, f64::max);
         for (force_n, expected_n) in trace.columns[0][1..].iter().zip(&expected) {
-            // 0.9 % flooded.
+            // 1.5 % flooded.
             assert!((force_n + 0.24 - expected_n).abs() < 0.02 * peak_n, "{force_n} {case}");
         }
         let budget = outcome.budget.unwrap();
-        assert!(budget.relative_residual().abs() < 1e-8, "{budget:?}");
+        // Some twenty tolerances of a step.
+        assert!(budget.relative_residual().abs() < 3e-8, "{budget:?}");
         let lost = loss_j(&budget) / number(&case, "loss_j");
-        // Flooded 0.90 to 0.97. Oil for half the film loses a tenth of what a flooded one does.
+        // Flooded 0.84 to 0.95. Oil for half the film loses a tenth of what a flooded one does.
         let range = match case["over_trapped"].as_f64() {
-            Some(0.5) => 0.93..1.6,
-            Some(1.0) => 0.64..1.1,
-            _ => 0.88..1.08,
+            Some(0.5) => 0.87..1.2,
+            Some(1.0) => 0.72..0.95,
+            _ => 0.82..1.08,
         };
         assert!(range.contains(&lost), "{lost} {case}");
     }

@@ -10,17 +10,16 @@ use std::f64::consts::PI;
 ///
 /// F = 2E* (a δ − ∫_0^a δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y) where a grows with y > 0;
 ///
-/// the squeezed rim y relaxes: ẏ = δ̇ − (2E*/η) (κ a y / (c₊ R*^{1.4}))^{5/3} − y ȧ/(2a), to y = 0 at least.
-/// Drawn, δ̇ < 0 at y = 0, it would relax so within some 10 ns with a smaller c₋: it is a dashpot, with
-/// κ a y = −c₋ R*^{1.4} (η |δ̇|/(2E*))^{3/5} in F and y = 0 elsewhere. Viscosity η exp(α p): with
-/// x = α k E* (β a y/R*²)^{1/3} and G = x/(1 − e^{−x}), β becomes β G^n and, for y > 0, η becomes η G^m.
-/// c₊, c₋, β, κ, k, m, n are pure numbers, fitted to a transient elastohydrodynamic contact
+/// the squeezed rim y relaxes, ẏ = δ̇ − (2E*/η) (κ a y / (c R*^{1.4} (R* y/a²)^g))^{5/3} − y ȧ/(2a), to y = 0 at
+/// least: oil that is drawn cavitates. Viscosity η exp(α p): with x = α k E* (β a y/R*²)^{1/3} and
+/// G = x/(1 − e^{−x}), β becomes β G^n and η becomes η G^m (1 + l α E* a/R*).
+/// c, β, κ, g, k, m, n, l are pure numbers, fitted to a transient elastohydrodynamic contact
 /// (`bench/film`), not to measurements.
 ///
 /// A volume V of oil ends at a meniscus. The oil beyond, which is missing, would bear 12 η δ̇ ∫ W²/(2πr h³) dr
 /// with Hertz's gap h and W = ∫ (1 − (2/π) arcsin(a/r)) 2πr dr: by its share D of the rim's force, κ becomes
 /// φ κ, φ about e^{−D}. Where the oil outside, v a⁴/R*, hardly fills the inlet, β becomes s β. The rim's
-/// force, squeezed or drawn, is ψ = 1 − e^{−v/0.01} of this: without oil the contact is Hertz's.
+/// force is ψ = 1 − e^{−v/0.01} of this: without oil the contact is Hertz's.
 ///
 /// The law never creates energy: F δ̇ is the change of E* (∫_0^a (δ − δ_e)² ds + ψ κ a y²) − (2/5) K δ^{5/2} plus
 /// a loss in the rim that is not negative, as ψ does not rise before the rim is relaxed. A contact starts
@@ -37,14 +36,16 @@ pub struct FilmEntrained {
     pub stiffness: Option<f64>,
 }
 
-/// c₊ and c₋: the rim's resistance while squeezed and while drawn.
-const RIM: [f64; 2] = [3.47, 0.185];
+/// c and g: the rim's resistance, and how it follows the rim's width.
+const RIM: [f64; 2] = [3.887, 0.04487];
 /// β: film that the edge leaves over the rim's overlap.
-const LEFT: f64 = 2.04;
+const LEFT: f64 = 0.4416;
 /// κ: the rim's stiffness.
-const STIFF: f64 = 2.41;
+const STIFF: f64 = 0.6543;
 /// k, m and n: pressure of an inlet, and how viscosity and film follow it.
-const PRESSURE: [f64; 3] = [1.262, -0.159, 0.6045];
+const PRESSURE: [f64; 3] = [2.266, -0.1592, 0.5735];
+/// l: how viscosity at the rim follows the pressure in the contact.
+const DEEP: f64 = 0.005603;
 
 /// J near the edge and far away, to the power −0.8.
 const J: [f64; 2] = [0.08922, 0.05819];
@@ -57,8 +58,8 @@ impl Term<5> for FilmEntrained {
     const INFO: LawInfo = LawInfo {
         name: "film_entrained",
         equation: "F = 2 E* (a δ − ∫ δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y),  \
-                   ẏ = δ̇ − (2 E*/η) (κ a y/(c₊ R*^{1.4}))^{5/3} − y ȧ/(2a) for y > 0;  drawn: \
-                   κ a y = −c₋ R*^{1.4} (η |δ̇|/(2 E*))^{3/5};  E* = 3 K/(4 √R*)",
+                   ẏ = δ̇ − (2 E*/η) (κ a y/(c R*^{1.4} (R* y/a²)^g))^{5/3} − y ȧ/(2a) for y > 0;  \
+                   E* = 3 K/(4 √R*)",
         parameters: &[
             Parameter {
                 name: "viscosity",
@@ -132,8 +133,8 @@ impl Term<5> for FilmEntrained {
                 radius,
                 modulus,
                 relaxing: (STIFF / (RIM[0] * reach)).powf(5.0 / 3.0) / speed,
-                drawing: RIM[1] * reach * speed.powf(0.6),
                 inlet,
+                deep: DEEP * alpha * modulus / radius,
                 meniscus: 6.0 / PI * (STIFF * radius).cbrt().powi(2) * RIM[0].powf(-5.0 / 3.0),
                 volume: per_volume.recip(),
                 rings: vec![Ring::default()],
@@ -263,13 +264,13 @@ impl Reach {
 struct EntrainedFilm {
     radius: f64,
     modulus: f64,
-    /// (2E*/η) (κ/(c₊ R*^{1.4}))^{5/3}.
+    /// (2E*/η) (κ/(c R*^{1.4}))^{5/3}.
     relaxing: f64,
-    /// c₋ R*^{1.4} (η/2E*)^{3/5}.
-    drawing: f64,
     /// x over (a y)^{1/3}.
     inlet: f64,
-    /// D/J over (a y)^{2/3}/a².
+    /// l α E*/R*.
+    deep: f64,
+    /// D/J over (a y)^{2/3}/a² and how the rim gives way.
     meniscus: f64,
     /// V.
     volume: f64,
@@ -312,6 +313,13 @@ impl EntrainedFilm {
         (x / less, 1.0 - x * (1.0 - less) / less)
     }
 
+    /// How a rim of area a y gives way over one that is wide, of oil that does not thicken.
+    fn giving_way(&self, rim: f64, a: f64, thick: f64) -> f64 {
+        let narrow = (rim.max(f64::MIN_POSITIVE) * self.radius / (a * a * a)).ln();
+        let thicker = if self.inlet > 0.0 { PRESSURE[1] * thick.ln() } else { 0.0 };
+        (-5.0 / 3.0 * RIM[1] * narrow - thicker).exp() / (1.0 + self.deep * a)
+    }
+
     /// What the volume leaves of a contact with its edge at radius a, at (δ, ∫ a² dδ).
     fn supply(&self, unknown: f64, a: f64, (overlap, swept): (f64, f64)) -> Supply {
         let r = self.radius;
@@ -326,9 +334,9 @@ impl EntrainedFilm {
         }
         let rim = unknown * (a * r).sqrt();
         let root = rim.cbrt();
-        let thicker = if self.inlet > 0.0 { self.thickening(root).0.ln() } else { 0.0 };
-        let film = LEFT * (PRESSURE[2] * thicker).exp() * rim * r / a.powi(3);
-        let share = self.meniscus * root * root / (a * a) * (-PRESSURE[1] * thicker).exp();
+        let thick = self.thickening(root).0;
+        let film = LEFT * thick.powf(PRESSURE[2]) * rim * r / a.powi(3);
+        let share = self.meniscus * root * root / (a * a) * self.giving_way(rim, a, thick);
         Supply::new(film, outside, share)
     }
 
@@ -451,19 +459,13 @@ impl EntrainedFilm {
         let (share, wet) = (supply.share, supply.wet().min(self.wet));
         let force = |rim: f64| 2.0 * self.modulus * (push + wet * rim - hertz);
         if self.drawn {
-            let rim = self.drawing * contact.rate.abs().powf(0.6);
-            return (force(rim.copysign(contact.rate)), 0.0);
+            return (force(0.0), 0.0);
         }
         // a y, below 0 only within a step that ends where it reaches 0.
         let rim = unknown * (a * self.radius / share).sqrt();
         let cube_root = of_rim.map_or_else(|| rim.abs().cbrt(), |(cube_root, _)| cube_root);
-        let relaxing = match self.inlet > 0.0 {
-            true => {
-                let thick = of_rim.map_or_else(|| self.thickening(cube_root).0, |(_, thick)| thick);
-                self.relaxing * thick.powf(-PRESSURE[1])
-            }
-            false => self.relaxing,
-        };
+        let thick = of_rim.map_or_else(|| self.thickening(cube_root).0, |(_, thick)| thick);
+        let relaxing = self.relaxing * self.giving_way(rim.abs(), a, thick);
         let given_way = relaxing * rim.abs() * cube_root * cube_root;
         let rate = (share * a / self.radius).sqrt() * (contact.rate - given_way.copysign(rim));
         (force(STIFF * share * rim), rate)
