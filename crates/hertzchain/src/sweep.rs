@@ -124,8 +124,7 @@ pub(crate) fn computed(
     };
     let (result, calibration) =
         pool(options.threads)?.install(|| batch.run_each(Shard::WHOLE, progress, take));
-    let mut summary = SweepSummary::new(experiment, &result, calibration.as_ref());
-    summary.assumed_model = input::assumed(&options.input);
+    let summary = SweepSummary::new(experiment, &result, calibration.as_ref());
     Ok(SweepResult { points, result, summary, plan: plan(experiment, options)? })
 }
 

@@ -150,11 +150,17 @@ impl Run {
 
 /// All shards of a folder put together.
 #[pyfunction]
-pub(crate) fn gather<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn gather<'py>(
+    py: Python<'py>,
+    run: &Run,
+    folder: PathBuf,
+) -> PyResult<Bound<'py, PyDict>> {
+    let only = Some(run.batch.fingerprint());
     let whole = Job::alone()
-        .run(py, |_| BatchResult::gather(&[Path::new(&folder)]).map_err(Failure::from))?;
+        .run(py, |_| BatchResult::gather(&[Path::new(&folder)], only).map_err(Failure::from))?;
     let columns = PyDict::new(py);
-    for (name, values) in COLUMNS.iter().zip(whole.rows.columns) {
+    // Speeds are the run's own.
+    for (name, values) in COLUMNS.iter().zip(whole.rows.columns).skip(1) {
         columns.set_item(name, values.into_pyarray(py))?;
     }
     let errors = whole.rows.failed.into_iter().map(|it| (it.place, it.why));

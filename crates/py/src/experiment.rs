@@ -234,7 +234,8 @@ impl Experiment {
     ///     Path, value in SI, SI unit.
     fn numbers(&self) -> Vec<(String, f64, String)> {
         let all = self.inner.numbers().into_iter();
-        all.filter_map(|named| Some((named.path, named.value?, named.unit))).collect()
+        let unit = |unit: String| if self.is_dimensionless() { "1".to_owned() } else { unit };
+        all.filter_map(|named| Some((named.path, named.value?, unit(named.unit)))).collect()
     }
 
     /// One number in SI.

@@ -15,7 +15,7 @@ use hertzchain_sim::rig::Progress;
 use hertzchain_sim::{Stop, stopped};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// How many series a campaign has.
@@ -67,13 +67,26 @@ impl Watch for Counted<'_> {
     }
 }
 
-/// Times of flight from recordings.
+/// All texts of a value without the name of a folder.
+fn without(folder: &str, value: Value) -> Value {
+    match value {
+        Value::String(text) => Value::String(text.replace(folder, "")),
+        Value::Array(all) => all.into_iter().map(|one| without(folder, one)).collect(),
+        Value::Object(all) => {
+            all.into_iter().map(|(name, one)| (name, without(folder, one))).collect()
+        }
+        other => other,
+    }
+}
+
+/// Times of flight from recordings; those of a folder of this process alone have no folder in their names.
 #[pyfunction]
 pub(crate) fn measure<'py>(
     py: Python<'py>,
     records: Vec<PathBuf>,
     options: &str,
     threads: usize,
+    folder: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let arguments: Measure = parsed("measure", options)?;
@@ -88,7 +101,7 @@ pub(crate) fn measure<'py>(
         let MeasureResult { shots: measured, curves } = found;
         let mut found = measuring::json(&measured, &curves);
         let wrong = measuring::evaluate(&measured).err();
-        found["verdict"] = wrong.map_or(serde_json::Value::Null, |failure| {
+        found["verdict"] = wrong.map_or(Value::Null, |failure| {
             failure.report(false).trim_start_matches("error: ").trim_end().into()
         });
         let tables = [
@@ -99,10 +112,11 @@ pub(crate) fn measure<'py>(
         ];
         Ok((found, tables))
     })?;
+    let found = without(folder, found);
     let reported = json::object(py, &found)?.cast_into::<PyDict>()?;
     let texts = PyDict::new(py);
     for (name, text) in tables {
-        texts.set_item(name, text)?;
+        texts.set_item(name, text.replace(folder, ""))?;
     }
     reported.set_item("tables", texts)?;
     Ok(reported.into_any())

@@ -39,13 +39,20 @@ fn sensors(experiment: &Experiment, asked: &[(String, usize)]) -> Result<Vec<Sen
     if asked.is_empty() {
         return Ok(experiment.inner.sensors());
     }
-    let bodies = experiment.inner.beads() + 1;
-    let within = |(kind, number): &(String, usize)| match *number <= bodies {
-        true => sensor(kind, *number),
-        false => Err(Failure::User(format!(
-            "there is no {kind} {number} in a chain of {} beads",
-            bodies - 1
-        ))),
+    let beads = experiment.inner.beads();
+    let known = |sensor: &Sensor| match *sensor {
+        Sensor::Bead(number) | Sensor::BeadPlusWall(number) => (1..=beads).contains(&number),
+        Sensor::Contact(number) => number <= beads,
+        // The striker is body 0, the wall comes after the last bead.
+        Sensor::Position(number) | Sensor::Velocity(number) => number <= beads + 1,
+    };
+    let within = |(kind, number): &(String, usize)| {
+        let found = sensor(kind, *number)?;
+        known(&found).then_some(found).ok_or_else(|| {
+            Failure::User(format!(
+                "there is no {kind} {number} in a chain of {beads} beads, which are counted from 1"
+            ))
+        })
     };
     asked.iter().map(within).collect()
 }

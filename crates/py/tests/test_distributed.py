@@ -51,6 +51,16 @@ def recordings(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.glob("*.h5")}
 
 
+def test_each_run_of_a_folder_loads_its_own_shards(dry, tmp_path):
+    runs = [(speeds, distributed.sweep(dry, speeds, folder=tmp_path, shards=2)) for speeds in ([0.2, 0.5], [0.3, -1.0])]
+    for speeds, run in runs:
+        with np.testing.suppress_warnings() as quiet:
+            quiet.filter(hc.ExperimentWarning)
+            same(run.load(), hc.ensemble(dry, speeds))
+    with pytest.warns(hc.ExperimentWarning, match="1 of 2 shots could not be computed"):
+        runs[1][1].load()
+
+
 def test_the_block_of_the_page_runs_on_a_cluster(client, tmp_path):
     (block,) = (text for text in PAGE.read_text(encoding="utf-8").split("```") if "dask.distributed" in text)
     code = block.removeprefix("python\n")

@@ -31,6 +31,10 @@ def test_signals_are_in_microseconds_and_newtons(small):
     assert ax.get_xlabel() == "Time (µs)" and ax.get_ylabel() == "Force (N)"
     with pytest.raises(ValueError, match="trace=True"):
         plot.signals(hc.shot(small))
+    mixed = hc.shot(small, 0.5, trace=["bead_3", "velocity_3"])
+    assert plot.signals(mixed, "velocity_3").get_ylabel() == "Velocity (m/s)"
+    with pytest.raises(ValueError, match="N and m/s"):
+        plot.signals(mixed, ["bead_3", "velocity_3"])
 
 
 def test_a_space_time_map_has_a_row_a_contact(small):

@@ -20,6 +20,22 @@ def test_a_shot_has_the_bits_of_the_command_line(cli, dry):
         theirs = reported[name]
         ours = found.energy if name == "energy" else getattr(found, name)
         assert ours == theirs, name
+    # The command line would say so of a chain that is not named.
+    assert "assumed_model" not in found.details
+
+
+def test_what_has_no_effect_on_an_ensemble_is_refused(dry):
+    for named in ({"speed": [0.1, 0.9]}, {"solver.accuracy": [1e-3, 1e-9]}, {"young_modulus": 2e11, "materials.aisi316.young_modulus": 1e11}):
+        with pytest.raises(hc.OptionError, match=r"give these as its speeds|share the solver|named twice"):
+            hc.ensemble(dry, 0.5, named)
+    masked = hc.ensemble(dry, np.ma.array([0.5, 0.6], mask=[False, True]), error_control="per-shot")
+    assert np.isnan(masked.tof_incident_s).tolist() == [False, True] and list(masked.errors) == [(1,)]
+
+
+@pytest.mark.parametrize("sensor", ["bead_0", "bead_41", "contact_41", "bead_plus_wall_41", "velocity_42", ("bead", 7.9), ("bead", True)])
+def test_a_sensor_that_is_not_there_is_refused(dry, sensor):
+    with pytest.raises(hc.OptionError, match=r"there is no|is no sensor"):
+        hc.shot(dry, trace=[sensor])
 
 
 def test_a_sweep_has_the_bits_of_the_command_line(cli, dry):

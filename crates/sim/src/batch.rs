@@ -183,6 +183,18 @@ impl Batch {
     /// value that it can't have is its own shot's error.
     pub fn with_number(mut self, path: &str, values: Vec<f64>) -> Result<Self, StudyError> {
         let path = self.experiment.place(path)?.path;
+        let refused = |why: &str| Err(StudyError::Refused(format!("`{path}`: {why}")));
+        if path == "striker.speed" {
+            return refused("a batch has one speed a shot already; give these as its speeds");
+        }
+        if path.starts_with("solver.") {
+            return refused(
+                "all shots of a batch share the solver; set it in the experiment or by an option",
+            );
+        }
+        if self.numbers.iter().any(|(known, _)| *known == path) {
+            return refused("it is named twice");
+        }
         let (count, shots) = (values.len(), self.shots());
         if count != shots {
             return Err(StudyError::Refused(format!(

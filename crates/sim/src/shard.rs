@@ -11,7 +11,7 @@
 //! for shard in Shard::all(2) {
 //!     batch.run_into(&folder, shard, &|| {})?;
 //! }
-//! let whole = BatchResult::gather(&[&folder])?;
+//! let whole = BatchResult::gather(&[&folder], None)?;
 //! let alone = batch.run(Shard::WHOLE, &|| {});
 //! assert_eq!(whole.rows.column(Column::Incident), alone.rows.column(Column::Incident));
 //! # std::fs::remove_dir_all(&folder)?;
@@ -289,14 +289,14 @@ impl BatchResult {
     }
 
     /// Gathers all shards of the one batch in these folders: the result of a
-    /// batch that was never cut.
+    /// batch that was never cut. Where one is named, shards of others are passed over.
     ///
     /// Where the batch was cut in several ways, one whole set of shards is enough.
     ///
     /// # Errors
     /// Missing shards; shards of several batches; two that should be the same and are not;
     /// no shards at all.
-    pub fn gather(folders: &[&Path]) -> Result<Self, StudyError> {
+    pub fn gather(folders: &[&Path], only: Option<Fingerprint>) -> Result<Self, StudyError> {
         let mut damaged = Vec::new();
         let mut cuts: BTreeMap<(Fingerprint, usize), Found> = BTreeMap::new();
         for path in files(folders)? {
@@ -307,6 +307,9 @@ impl BatchResult {
                     continue;
                 }
             };
+            if only.is_some_and(|only| only != part.batch) {
+                continue;
+            }
             let found = cuts.entry((part.batch, part.shard.of)).or_default();
             let number = part.shard.number;
             match found.get(&number) {

@@ -101,6 +101,13 @@ fn numbers_that_differ_from_shot_to_shot_are_those_of_experiments_of_their_own()
     };
     assert!(refused("young_modulus", 3).contains("3 values for 4 shots"));
     assert!(refused("yong_modulus", 4).contains("young_modulus"));
+    // These would be in the labels of the shots and nowhere else.
+    assert!(refused("speed", 4).contains("give these as its speeds"));
+    assert!(refused("solver.accuracy", 4).contains("share the solver"));
+    let run = Batch::new(&dry, vec![0.5; 4], BatchOptions::of(&dry)).unwrap();
+    let named = run.with_number("young_modulus", moduli.to_vec()).unwrap();
+    let again = named.with_number("materials.aisi316.young_modulus", moduli.to_vec());
+    assert!(again.unwrap_err().to_string().contains("named twice"));
 }
 
 #[test]

@@ -127,13 +127,18 @@ def plain(value: object) -> Any:
     raise OptionError(f"{value!r} is neither a number nor a text, nor a list or a dict of these")
 
 
+def unmasked(values: Any) -> Any:
+    """Masked numbers as NaN."""
+    return np.ma.filled(values.astype(float), np.nan) if np.ma.isMaskedArray(values) else values
+
+
 def count(name: str, value: int | None, least: int = 0, most: int = 1024) -> int:
     """A whole number; 0 for None."""
     if value is None:
         return 0
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+    if isinstance(value, bool) or not isinstance(value, Integral) or not least <= value <= most:
         raise OptionError(f"{name} = {value!r}: expected a whole number from {least} to {most}")
-    return value
+    return int(value)
 
 
 @contextmanager

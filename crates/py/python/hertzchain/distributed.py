@@ -102,18 +102,17 @@ class DistributedResult(Result):
         Returns
         -------
         Ensemble
-            Columns of the run's shape in SI, NaN where there is no number.
+            Columns of the run's shape in SI, NaN where there is no number; without widths, pulse speeds and durations.
 
         Raises
         ------
         OptionError
-            Shards that are missing, damaged, or of several runs; a campaign's.
+            Shards that are missing or damaged; a run without any time of flight; a campaign's.
         """
         if self._work is None:
             raise OptionError("recordings of a campaign are measured, not loaded: see hertzchain.measure")
         run, experiment, shape, names = self._work
-        found = _native.gather(str(self.folder))
-        found["columns"].pop("speed_m_s")
+        found = _native.gather(run, str(self.folder))
         return gathered(experiment, shape, names, {**found, "speed_m_s": run.speeds(), "values": run.values()})
 
     def _columns(self) -> dict[str, list[Any]]:

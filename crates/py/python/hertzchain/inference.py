@@ -67,8 +67,8 @@ def fit(
     points : int, optional
         Most points of a batch of a cluster; smaller ones where not every thread would have one.
     **options
-        Mappings have numbers in SI, or texts with a unit, by name; ``bounds`` and ``prior`` have pairs:
-        least and largest value, mean and standard deviation; ``against`` has the names that are free
+        Mappings have numbers in SI, or texts with a unit, by name (``fixed`` needs the unit); ``bounds`` and ``prior``
+        have pairs: least and largest value, mean and standard deviation; ``against`` has the names that are free
         by model.
 
     Returns
@@ -111,8 +111,8 @@ def fit(
 
 def fit_result(found: dict[str, Any]) -> FitResult:
     """A fit from the program's JSON; warns of what was assumed."""
-    for key in ("assumed", "held_loads"):
-        if (text := found.get(key)) is not None:
+    for text in (found.get("assumed"), found.get("held_loads"), (found.get("posterior") or {}).get("unconverged")):
+        if text is not None:
             warnings.warn(in_python(text), ExperimentWarning, stacklevel=3)
     rows, samples = found.pop("rows"), found.pop("samples", None)
     texts = ("observable", "source", "channel", "file")
@@ -262,20 +262,14 @@ def _only(data: Any) -> Any:
 
 def csv(columns: Mapping[str, Any]) -> str:
     """Columns as CSV text with all digits; NaN and masked numbers as empty cells."""
-    lists = {name: np.atleast_1d(_unmasked(name, values)) for name, values in columns.items()}
+    try:
+        lists = {name: np.atleast_1d(options.unmasked(values)) for name, values in columns.items()}
+    except ValueError:
+        raise OptionError("only numbers can be masked; leave masked rows of a column of texts out") from None
     if {values.ndim for values in lists.values()} != {1} or len({values.size for values in lists.values()}) != 1:
         shapes = ", ".join(f"{name} {values.shape}" for name, values in lists.items())
         raise OptionError(f"columns must be of one length: {shapes or 'there are none'}")
     return csv_text({name: [_cell(value) for value in values.tolist()] for name, values in lists.items()})
-
-
-def _unmasked(name: str, values: Any) -> Any:
-    if not np.ma.isMaskedArray(values):
-        return values
-    try:
-        return np.ma.filled(values.astype(float), np.nan)
-    except ValueError:
-        raise OptionError(f"column {name!r}: only numbers can be masked; leave its masked rows out") from None
 
 
 def _cell(value: Any) -> Any:

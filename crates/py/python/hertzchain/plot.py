@@ -100,7 +100,7 @@ def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes |
     shot : Shot or Trace
         With sampled sensors: ``hertzchain.shot(..., trace=True)``.
     sensors : sequence of str, optional
-        Which; all forces when absent.
+        Which; all forces when absent, or all there is.
 
     Returns
     -------
@@ -110,18 +110,21 @@ def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes |
     Raises
     ------
     ValueError
-        A shot without a trace.
+        A shot without a trace; sensors of several units.
     KeyError
         A sensor that was not sampled.
     """
     trace = _trace(shot)
-    shown = list(sensors or [name for name in trace.signals if trace.units[name] in ("N", "1")])
+    forces = [name for name in trace.signals if trace.units[name] in ("N", "1")]
+    shown = [sensors] if isinstance(sensors, str) else list(sensors or forces or trace.signals)
+    if len(units := {trace.units[name] for name in shown}) > 1:
+        raise ValueError(f"sensors in {' and '.join(sorted(units))}: expected one unit in a figure")
     ax = on_axes(ax)
     scale, unit = time_scale(trace.dimensionless)
     for name in shown:
         ax.plot(scale * trace.time_s, trace[name], label=_label(name))
     ax.set_xlabel(f"Time{unit}")
-    of = trace.units[shown[0]] if shown else "N"
+    of = min(units, default="N")
     ax.set_ylabel("Signal" if of == "1" else f"{ {'N': 'Force', 'm/s': 'Velocity', 'm': 'Displacement'}[of] } ({of})")
     ax.margins(x=0)
     if len(shown) > 1:
@@ -326,7 +329,7 @@ def ratios(
         marker = (markers or {}).get(name, MARKERS[at % 5])
         ax.plot(speeds, ratio, marker=marker, color=colour_of(at), label=name)
     ax.axhline(1.0, color="0.3", linewidth=0.6)
-    ax.set(xlabel="Speed of the striker (m/s)", ylabel=f"{end.capitalize()} ToF, wet / dry")
+    ax.set(xlabel="Speed of the striker" + ("" if getattr(dry, "dimensionless", False) else " (m/s)"), ylabel=f"{end.capitalize()} ToF, wet / dry")
     ax.legend()
     return ax
 

@@ -117,7 +117,7 @@ def measure(
         how["rows"] = "shots"
     asked = options.text("measure", how)
     with TemporaryDirectory(prefix="hertzchain-", ignore_cleanup_errors=True) as folder, options.progress(progress, None, "record") as update:
-        found = _native.measure(_files(records, Path(folder)), asked, options.count("threads", threads), update)
+        found = _native.measure(_files(records, Path(folder)), asked, options.count("threads", threads), f"{folder}{os.sep}", update)
     if found["verdict"] is not None:
         refused = "".join(f"\n{why}" for why in found["refused"][:3])
         _warnings.warn(in_python(found["verdict"] + refused), ExperimentWarning, stacklevel=2)
@@ -127,6 +127,7 @@ def measure(
 
 def _files(records: options.Path_ | Iterable[options.Path_] | NDArray[Any], folder: Path) -> list[str]:
     if isinstance(records, np.ndarray):
+        records = options.unmasked(records)
         if records.dtype.kind not in "fiu" or records.ndim not in (1, 2) or records.size == 0:
             raise OptionError(f"records of {records.dtype} and shape {records.shape}: expected volts of shape (samples,) or (shots, samples)")
         path = folder / "array.npy"

@@ -252,8 +252,9 @@ class Trace(Result):
         return {name: "1" if self.dimensionless else kinds.get(name.split("_")[0], "N") for name in self.signals}
 
     def _summary(self) -> tuple[str, dict[str, str]]:
-        rows = {name: f"{short(np.max(np.abs(signal)))} {self.units[name]} at most" for name, signal in self.signals.items()}
-        return f"Trace of {self.time_s.size} samples until {short(self.time_s[-1] if self.time_s.size else None)} s", rows
+        unit, second = ({}, "") if self.dimensionless else (self.units, " s")
+        rows = {name: f"{short(np.max(np.abs(signal)))} {unit.get(name, '')} at most".replace("  ", " ") for name, signal in self.signals.items()}
+        return f"Trace of {self.time_s.size} samples until {short(self.time_s[-1] if self.time_s.size else None)}{second}", rows
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -393,7 +394,8 @@ class PowerLaw(Result):
             return short(value) if error is None else f"({short(value)} ± {short(error, 2)})"
 
         second = "" if self.dimensionless else " s"
-        return f"PowerLaw {reported(self.prefactor_s, self.prefactor_error_s)}{second} · v^{reported(self.exponent, self.exponent_error)}"
+        against = ", not a power law within the errors" if self.details.get("supported") is False else ""
+        return f"PowerLaw {reported(self.prefactor_s, self.prefactor_error_s)}{second} · v^{reported(self.exponent, self.exponent_error)}{against}"
 
 
 def power_law(found: Mapping[str, Any], dimensionless: bool = False) -> PowerLaw | None:
@@ -502,11 +504,11 @@ class WarningSummary(Result):
         return f"first of {self.shots} at {self.index}: {'; '.join(self.messages)}"
 
 
-def warn(messages: Sequence[str], shots: int) -> None:
+def warn(messages: Sequence[str], shots: int, level: int = 3) -> None:
     """One warning for all shots of a call that have any."""
     if messages:
         others = {1: "", 2: "\n(similar warnings for another shot)"}.get(shots, f"\n(similar warnings for {shots - 1} other shots)")
-        _warnings.warn("\n".join(messages) + others, ExperimentWarning, stacklevel=3)
+        _warnings.warn("\n".join(messages) + others, ExperimentWarning, stacklevel=level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

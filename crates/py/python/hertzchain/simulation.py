@@ -99,7 +99,7 @@ def shot(
         ``("contact", 40)``, ``"position_0"``, ``"velocity_3"``.
     interval_s : float, optional
         Time between samples in s; a tenth of the contact time when absent. A
-        trace has at most 10^8 numbers.
+        trace has at most 30,000,000 numbers.
     forces : ForceLaw or iterable of ForceLaw
         Force laws of Python, in place of the experiment's or beside them.
 
@@ -153,10 +153,7 @@ def _sensors(trace: bool | Iterable[Sensor]) -> list[tuple[str, int]] | None:
 
 def _sensor(sensor: Sensor) -> tuple[str, int]:
     kind, number = sensor.rpartition("_")[::2] if isinstance(sensor, str) else sensor
-    try:
-        whole = int(number)
-    except (TypeError, ValueError):
-        whole = -1
+    whole = int(number) if str(number).isdecimal() else -1
     if whole < 0:
         raise OptionError(f"{sensor!r} is no sensor; expected a kind and a number, such as bead_7")
     return kind, whole
@@ -266,7 +263,6 @@ def ensemble(
     speeds, values = broadcast(experiment, speed, parameters)
     with options.progress(progress, speeds.size, "shot") as update:
         found = _native.Run(experiment, speeds, list(values), list(values.values()), options.text("ensemble", how)).compute(False, update)
-    _check_any(dict(found["errors"]), speeds.size)
     return gathered(experiment, speeds.shape, list(values), found)
 
 
@@ -280,7 +276,8 @@ def gathered(experiment: Experiment, shape: tuple[int, ...], names: Sequence[str
     if (first := found["warnings"]) is not None:
         place, messages, shots = first
         summary = WarningSummary(index(place), messages, shots)
-        warn(messages, shots)
+        warn(messages, shots, 4)
+    _check_any(dict(found["errors"]), int(np.prod(shape)), 4)
     units = [(path, unit) for path, _, unit in experiment.numbers()]
     return Ensemble(
         experiment=experiment.name,
@@ -305,33 +302,31 @@ def broadcast(
             raise OptionError("an ensemble needs a chain with a striker")
         speed = experiment.speed_m_s
     named = {name: _numbers(name, values) for name, values in (parameters or {}).items()}
-    for name in named:
-        experiment.get(name)
-    arrays = {"speed": _numbers("speed", speed), **named}
+    arrays = [_numbers("speed", speed), *named.values()]
     try:
-        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        shape = np.broadcast_shapes(*(array.shape for array in arrays))
     except ValueError:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(["speed", *named], arrays, strict=True))
         raise OptionError(f"these shapes can't be broadcast against each other: {shapes}") from None
     if (count := int(np.prod(shape, dtype=object))) > MOST_SHOTS:
         raise OptionError(f"an ensemble of shape {shape} has {count} shots; expected at most {MOST_SHOTS}: call it in parts")
-    speeds, *values = (np.broadcast_to(array, shape) for array in arrays.values())
+    speeds, *values = (np.broadcast_to(array, shape) for array in arrays)
     return speeds, dict(zip(named, values, strict=True))
 
 
 def _numbers(name: str, values: object) -> Floats:
     """Real numbers of any shape, as doubles."""
-    made = np.asarray(values)
+    made = np.asarray(options.unmasked(values))
     if made.dtype.kind not in "fiu":
         raise OptionError(f"{name} holds {made.dtype}: expected real numbers")
     return made.astype(np.float64, copy=False)
 
 
-def _check_any(errors: Mapping[int, str], count: int) -> None:
+def _check_any(errors: Mapping[int, str], count: int, level: int = 3) -> None:
     """Raises where no shot was computed, and warns where some were not, as at a speed of NaN."""
     if not errors:
         return
     first = next(iter(errors.values()))
     if len(errors) == count:
         raise OptionError(f"no shot could be computed; the first: {first}")
-    _warnings.warn(f"{len(errors)} of {count} shots could not be computed; the first: {first}", ExperimentWarning, stacklevel=3)
+    _warnings.warn(f"{len(errors)} of {count} shots could not be computed; the first: {first}", ExperimentWarning, stacklevel=level)

@@ -54,12 +54,12 @@ fn shards_of_several_folders_are_the_sweep_that_was_never_cut() {
     shards(&sweep, &one, &[1, 3], 3);
     // One of them twice: that is no harm.
     shards(&sweep, &two, &[2, 3], 3);
-    let merged = BatchResult::gather(&[&one.0, &two.0]).unwrap();
+    let merged = BatchResult::gather(&[&one.0, &two.0], None).unwrap();
     assert_eq!(contents(&merged), whole);
     // More parts than shots: some are empty.
     let many = Scratch::new("many");
     shards(&sweep, &many, &(1..=12).collect::<Vec<_>>(), 12);
-    assert_eq!(contents(&BatchResult::gather(&[&many.0]).unwrap()), whole);
+    assert_eq!(contents(&BatchResult::gather(&[&many.0], None).unwrap()), whole);
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn a_damaged_shard_counts_as_missing_and_is_made_again() {
     for place in [3, sound.len() / 3, sound.len() / 2] {
         fs::write(&path, &sound[..place]).unwrap();
         assert!(BatchResult::read(&path).is_err(), "cut at {place}");
-        let error = BatchResult::gather(&[&folder.0]).unwrap_err();
+        let error = BatchResult::gather(&[&folder.0], None).unwrap_err();
         let text = error.to_string();
         assert!(text.starts_with("1 of 2 shards are missing of "), "{text}");
         assert!(text.contains("--shard 1/2"), "{text}");
@@ -127,14 +127,14 @@ fn a_number_that_is_not_the_one_written_is_found_out() {
 fn what_is_missing_or_another_runs_is_contents() {
     let folder = Scratch::new("missing");
     shards(&small(1e-6), &folder, &[2, 4, 7], 8);
-    let error = BatchResult::gather(&[&folder.0]).unwrap_err().to_string();
+    let error = BatchResult::gather(&[&folder.0], None).unwrap_err().to_string();
     assert!(error.contains("5 of 8 shards are missing"), "{error}");
     assert!(error.contains("1,3,5-6,8") && error.contains("--shard 1/8"), "{error}");
     shards(&small(1e-5), &folder, &[1], 1);
-    let error = BatchResult::gather(&[&folder.0]).unwrap_err().to_string();
+    let error = BatchResult::gather(&[&folder.0], None).unwrap_err().to_string();
     assert!(error.contains("2 different runs") && error.contains("accuracy 1e-5"), "{error}");
     let empty = Scratch::new("empty");
     fs::create_dir_all(&empty.0).unwrap();
-    let error = BatchResult::gather(&[&empty.0]).unwrap_err().to_string();
+    let error = BatchResult::gather(&[&empty.0], None).unwrap_err().to_string();
     assert!(error.contains("no shards in"), "{error}");
 }

@@ -32,7 +32,7 @@ fn campaign(first: &Path, folders: &[&Path], out: &Path) -> Result<(), Failure> 
 }
 
 fn merge_sweep(folders: &[&Path], arguments: &Arguments) -> Result<(), Failure> {
-    let part = BatchResult::gather(folders)?;
+    let part = BatchResult::gather(folders, None)?;
     let folder = Folder::open(&arguments.out, &[sweep::SWEEP], arguments.force)?;
     sweep::report_warnings(&part);
     sweep::print_table(&part)?;

@@ -20,7 +20,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let prepared = PreparedShot::new(&experiment, arguments)?;
     let folder = open_folder(arguments)?;
     announce(&prepared.plan);
-    let shot = with_notes(Some(Threads(1)), || prepared.run())?;
+    let mut shot = with_notes(Some(Threads(1)), || prepared.run())?;
+    shot.assumed_model = input::assumed(&arguments.input);
     failure::print_speed_warnings(arguments.speed.as_ref(), &shot.warnings);
     if arguments.json {
         print::print_json(&named(json!(shot), shot.units))?;

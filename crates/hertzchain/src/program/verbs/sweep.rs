@@ -31,7 +31,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         counter.finish();
         return done;
     }
-    let swept = sweep::computed(&experiment, arguments, &batch, &|| counter.advance())?;
+    let mut swept = sweep::computed(&experiment, arguments, &batch, &|| counter.advance())?;
+    swept.summary.assumed_model = input::assumed(&arguments.input);
     counter.finish();
     show(arguments, &experiment, &swept)?;
     folder.map_or(Ok(()), |folder| write(folder, &swept.result))?;
