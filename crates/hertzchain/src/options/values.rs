@@ -363,7 +363,7 @@ pub(super) mod pairs {
     use super::*;
 
     #[derive(Deserialize)]
-    #[serde(untagged)]
+    #[serde(untagged, expecting = "expected a number or a text, or a pair of them")]
     enum Entry {
         One(Text),
         Two([Option<Text>; 2]),

@@ -62,7 +62,7 @@ def campaign(
     Raises
     ------
     OptionError, ExperimentError, InternalError
-        An experiment that no rig can do, a folder with something else in it, a recording that can't be written.
+        An experiment that no rig can do, a folder with another campaign in it, a recording that can't be written.
 
     Warns
     -----

@@ -659,7 +659,7 @@ class MeasureResult(Result):
     tables : dict of str to str
         The program's tables as text: ``shots.csv``, ``speeds.csv`` …
     details : dict
-        All of ``measure --json``: also ratios, notes, the low-pass, lines of the table without recordings (``unmatched``).
+        ``measure --json`` but its cases: also ratios, notes, the low-pass, lines of the table without recordings (``unmatched``).
     refused : list of str
         Files that could not be read.
     verdict : str or None
