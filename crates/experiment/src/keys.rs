@@ -426,7 +426,7 @@ static SOLVER: Fields = table! { "[solver]";
     method: Choice(Method::NAMES), "default adaptive";
     accuracy: Quantity("1", ACCURACY), "relative; default 1e-6";
     step: positive("s"), "step of a fixed-step method";
-    duration: positive("s"), "default: until the reflected pulse has passed the sensor";
+    duration: positive("s"), "default: until the reflected pulse has passed the sensor and the striker is away";
 };
 
 static CASE: Fields = table! { "[[campaign.cases]]";

@@ -77,6 +77,20 @@ fn one_command_gives_a_time_of_flight_from_a_file_of_volts() {
     // The ripple of 1e-3 moves each of two tops by some 1e-3 of a width of 42 µs.
     assert!((found - 1e-6 * incident_us(0.5)).abs() < 1e-7, "{found}");
     assert_eq!(shot["flags"].as_array().unwrap().len(), 0, "{shot}");
+    let again = measure(&folder, &["shot.csv", "./shot.csv", ".", "--json"]);
+    assert_eq!(json(&again)["shots"].as_array().unwrap().len(), 1);
+    assert!(String::from_utf8_lossy(&again.stderr).contains("given twice, measured once"));
+}
+
+#[test]
+fn voltages_are_in_volts_whatever_the_file_has() {
+    let folder = folder("millivolts");
+    let rows = volts(0.5, 1.0).into_iter().enumerate();
+    let rows: String = rows.map(|(i, volt)| format!("{i},{:.4}\n", 1e3 * volt)).collect();
+    fs::write(folder.join("shot.csv"), format!("Time (us),CH1 (mV)\n{rows}")).unwrap();
+    let shot = &json(&measure(&folder, &["shot.csv", "--json"]))["shots"][0];
+    let found = shot["incident_peak_v"].as_f64().unwrap();
+    assert!((found - 1.0).abs() < 0.01, "{found}");
 }
 
 #[test]

@@ -22,7 +22,7 @@ use hertzchain_measure::signal::{
 use hertzchain_measure::{
     Curves, Cut, Grouping, Level, Measurement, Note, Options, Shot, ShotList, Watch, speeds_csv,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 use std::fs;
 use std::io::ErrorKind;
@@ -37,7 +37,7 @@ const POWER: f64 = 6.0;
 /// Full width of its fit, in full widths at half maximum.
 const FIT_WIDTHS: f64 = 2.0;
 
-/// Files, and those of folders in order of their names, with a note on what else lies in these;
+/// Files, each once, and those of folders in order of their names, with a note on what else lies in these;
 /// the table of shots may lie among them.
 ///
 /// # Errors
@@ -60,6 +60,13 @@ pub fn files(given: &[PathBuf], list: Option<&Path>) -> Result<(Vec<PathBuf>, Ve
         notes.extend(passed_over(path, others));
     }
     files.retain(|file| !is_list(file));
+    let mut known = BTreeSet::new();
+    let (files, again): (Vec<_>, Vec<_>) = files
+        .into_iter()
+        .partition(|file| file.canonicalize().map_or(true, |own| known.insert(own)));
+    if !again.is_empty() {
+        notes.push(Note { text: "given twice, measured once".to_owned(), files: again });
+    }
     Ok((files, notes))
 }
 

@@ -97,7 +97,7 @@ pub struct ModelOptions {
 pub struct ParameterOptions {
     /// Free numbers, separated by commas: short names (Y, nu, eta, K, A, B, of a material or section
     /// as in pump-oil.eta or wet.K) or paths of the experiment file; followed by :power for a power
-    /// law of speed, by :each for a value a speed
+    /// law of speed, by :each for a value a row
     #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true, value_parser = name)]
     pub free: Vec<String>,
     /// Where a number starts, if not at the experiment's value

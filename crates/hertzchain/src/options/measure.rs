@@ -14,7 +14,7 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Args, Serialize, Deserialize)]
 #[serde(default)]
 pub struct MeasureOptions {
-    /// Recordings: HDF5 of a campaign, CSV and other text, NPY, NPZ, WAV, TDMS; or folders of them
+    /// Recordings: HDF5, MATLAB, CSV and other text, NPY, NPZ, WAV, TDMS; or folders of them
     #[arg(required = true, value_name = "RECORD")]
     #[serde(skip_serializing)]
     pub records: Vec<PathBuf>,

@@ -272,8 +272,9 @@ fn slice(
     Ok(match dataset.datatype()? {
         DatatypeMessage::FixedPoint { size, signed, .. } => {
             let whole = dataset.read_numeric_slice_as::<i64>(&starts, &counts)?;
-            let range_v = (size == 2 && signed).then(|| converter_range_v(1.0, 0.0));
-            (whole.into_iter().map(|number| number as f64).collect(), range_v)
+            let volts: Vec<f64> = whole.into_iter().map(|number| number as f64).collect();
+            let range_v = (size == 2 && signed).then(|| converter_range_v(&volts, 1.0, 0.0));
+            (volts, range_v)
         }
         _ => (dataset.read_numeric_slice_as::<f64>(&starts, &counts)?, None),
     })

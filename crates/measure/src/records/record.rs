@@ -101,7 +101,8 @@ impl Record {
         }
         for (channel, later) in self.channels.iter_mut().zip(part.channels) {
             channel.volts.extend(later.volts);
-            channel.range_v = channel.range_v.filter(|range| Some(*range) == later.range_v);
+            let both = channel.range_v.zip(later.range_v);
+            channel.range_v = both.map(|(one, two)| (one.0.min(two.0), one.1.max(two.1)));
         }
     }
 
@@ -121,9 +122,9 @@ impl Record {
 pub struct Channel {
     /// Its name in the file, or its number from 1.
     pub name: String,
-    /// Numbers in the file's unit, mostly V.
+    /// Voltages in V, or numbers in the file's unit where it states none.
     pub volts: Vec<f64>,
-    /// Lowest and highest voltage of a 16-bit converter's range: samples there are clipped.
+    /// Lowest and highest voltage of a converter's range: samples there are clipped.
     pub range_v: Option<(f64, f64)>,
 }
 
@@ -132,8 +133,12 @@ pub(crate) const SEPARATE: &[&str] = &["sensor", "wall"];
 
 pub(crate) type Samples = (Vec<f64>, Option<(f64, f64)>);
 
-/// Range of a 16-bit converter, V = count · `volts_per_count` + `offset_v`.
-pub(crate) fn converter_range_v(volts_per_count: f64, offset_v: f64) -> (f64, f64) {
-    let ends = [i16::MIN, i16::MAX];
+/// Range of a converter of at most 16 bits, V = count · `volts_per_count` + `offset_v`: one of fewer
+/// leaves the lowest bits of all counts at 0, so that its highest count is less.
+pub(crate) fn converter_range_v(volts: &[f64], volts_per_count: f64, offset_v: f64) -> (f64, f64) {
+    let count = |volts: f64| ((volts - offset_v) / volts_per_count).round() as i32;
+    let used = volts.iter().fold(0, |used, volts| used | count(*volts));
+    let least = if used == 0 { 1 } else { 1 << used.trailing_zeros().min(15) };
+    let ends = [i32::from(i16::MIN), i32::from(i16::MAX) + 1 - least];
     extremes(&ends.map(|count| f64::from(count) * volts_per_count + offset_v))
 }

@@ -121,11 +121,9 @@ impl OpenSeries {
             let counts = samples.read_slice::<i16>(&[row, 0], &[1, self.length])?;
             let (scale, offset) = (self.volts_per_count, self.offset_v);
             let volts = counts.into_iter().map(|count| f64::from(count) * scale + offset);
-            Ok(Channel {
-                name: (*name).to_owned(),
-                volts: volts.collect(),
-                range_v: Some(converter_range_v(scale, offset)),
-            })
+            let volts: Vec<f64> = volts.collect();
+            let range_v = Some(converter_range_v(&volts, scale, offset));
+            Ok(Channel { name: (*name).to_owned(), volts, range_v })
         };
         let channels: Result<Vec<Channel>, Hdf5Error> = self.channels.iter().map(channel).collect();
         let channels =

@@ -268,8 +268,9 @@ impl Head {
             let read = channels.iter().map(|one| {
                 let volts = one.read(&mut reader, shift, from..from + count)?;
                 let is_counts = one.number.kind == NumberKind::I16 && one.scales.is_empty();
-                let range = || converter_range_v(one.number.scale, one.number.offset);
-                Ok((volts, is_counts.then(range)))
+                let range = || converter_range_v(&volts, one.number.scale, one.number.offset);
+                let range_v = is_counts.then(range);
+                Ok((volts, range_v))
             });
             let read: io::Result<_> = read.collect();
             read.map_err(|cause| MeasureError::reading(&file, cause))

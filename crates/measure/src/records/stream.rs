@@ -108,10 +108,10 @@ pub fn stream_pieces(
 
 fn piece(name: &str, samples: &[f64], first_sample: u64, format: StreamFormat) -> Record {
     let is_counts = format.kind == SampleKind::I16;
-    let channels = numbered(format.channels).into_iter().enumerate().map(|(at, name)| Channel {
-        name,
-        volts: samples.iter().skip(at).step_by(format.channels).copied().collect(),
-        range_v: is_counts.then(|| converter_range_v(1.0, 0.0)),
+    let channels = numbered(format.channels).into_iter().enumerate().map(|(at, name)| {
+        let volts: Vec<f64> = samples.iter().skip(at).step_by(format.channels).copied().collect();
+        let range_v = is_counts.then(|| converter_range_v(&volts, 1.0, 0.0));
+        Channel { name, volts, range_v }
     });
     let new =
         Record::new(name.to_owned(), Path::new(name), format.rate_hz.recip(), channels.collect());

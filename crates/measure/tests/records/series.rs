@@ -79,6 +79,27 @@ fn a_series_reads_back_as_it_was_written() {
 }
 
 #[test]
+fn the_highest_count_of_a_converter_of_fewer_bits_is_less() {
+    let path = folder("bits").join("series.h5");
+    let mut writer = SeriesWriter::create(&path, &info(1000)).unwrap();
+    let samples: Vec<i16> = samples(0, 1000).iter().map(|count| count & !15).collect();
+    let row = ShotRow {
+        shot: 0,
+        programmed_speed_m_s: 0.5,
+        measured_speed_m_s: 0.5,
+        triggered: true,
+        contacts: &[("overlap_before_m", &[0.0, 0.0])],
+        samples: &samples,
+        truth: &[("tof_incident_s", 6e-4), ("speed_m_s", 0.4999)],
+    };
+    writer.push(&row).unwrap();
+    writer.finish().unwrap();
+    let (_, high_v) = all(&path)[0].channels[0].range_v.unwrap();
+    // 2047 of 2048 steps of 12 bits; rounding.
+    assert!((high_v - 10.25 + 10.0 / 2048.0).abs() < 1e-12, "{high_v}");
+}
+
+#[test]
 fn true_values_of_contacts_come_shot_after_shot() {
     let path = folder("contacts").join("series.h5");
     write(&path, 3, 100).unwrap();

@@ -20,7 +20,9 @@ pub(super) fn experiment(experiment: &Experiment, chain: &Chain) -> Group {
     solver.step_s.into_iter().for_each(|step| group.number("step", step, "s"));
     match solver.duration_s {
         Some(duration) => group.number("duration", duration, "s"),
-        None => group.text("duration", "until the reflected pulse has passed"),
+        None => {
+            group.text("duration", "until the reflected pulse has passed and the striker is away")
+        }
     }
     if let Some(liquid) = experiment.liquid() {
         group.text("liquid", liquid.name.clone());

@@ -37,7 +37,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn open_folder(arguments: &Arguments) -> Result<Option<Folder>, Failure> {
-    let replace = arguments.force || arguments.resume;
+    let resumes = arguments.resume && arguments.method == Method::Posterior;
+    let replace = arguments.force || resumes;
     Folder::asked(arguments.out.as_deref(), &[FIT, fit::CHAIN], replace)
 }
 

@@ -20,7 +20,9 @@ const RATE_PREFIXES: &[(&[&str], f64)] =
     &[(&[""], 1.0), (&["k"], 1e3), (&["m"], 1e6), (&["g"], 1e9)];
 
 /// Units of channels, which show that a line has units.
-const VOLTS: &[&str] = &["v", "mv", "µv", "uv", "volt", "volts"];
+const VOLTS: &[&str] = &["volts", "volt", "v"];
+const VOLT_PREFIXES: &[(&[&str], f64)] =
+    &[(&[""], 1.0), (&["k"], 1e3), (&["m", "milli"], 1e-3), (&["u", "µ", "μ", "micro"], 1e-6)];
 
 /// Names of columns of times, and of columns that count.
 const TIMES: &[&str] = &["t", "time", "times", "zeit", "temps", "tiempo", "x-axis", "x"];
@@ -54,6 +56,8 @@ pub(super) struct TextHeader {
     /// Columns that are channels.
     pub channels: Vec<usize>,
     pub names: Vec<String>,
+    /// Volts of one in each channel; 1 where a unit is not stated or no voltage.
+    pub scales: Vec<f64>,
     /// Column of times and its unit in s, if stated.
     pub time: Option<(usize, Option<f64>)>,
     pub time_name: String,
@@ -104,7 +108,9 @@ impl TextHeader {
         });
         let of_day = time.filter(|column| is_time_of_day(beginning, dialect, *column));
         let stated = time.filter(|_| of_day.is_none()).and_then(unit);
+        let volts = |column: &usize| prefixed(&unit(*column)?, VOLTS, VOLT_PREFIXES);
         Self {
+            scales: channels.iter().map(|column| volts(column).unwrap_or(1.0)).collect(),
             names: names.collect(),
             channels,
             time: time.map(|column| {
@@ -209,7 +215,7 @@ fn without_mark<'a>(line: &'a str, dialect: &Dialect, counts: bool) -> &'a str {
 
 fn is_unit(field: &str) -> bool {
     let bracketed = field.starts_with(['(', '[']) && field.ends_with([')', ']']);
-    bracketed || seconds(field).is_some() || VOLTS.contains(&&*field.to_lowercase())
+    bracketed || seconds(field).is_some() || prefixed(field, VOLTS, VOLT_PREFIXES).is_some()
 }
 
 /// Name and unit of a title: "Time (ms)", "Zeit in ms".

@@ -41,7 +41,8 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
         )));
     }
     let picked = chosen(file, &header.names, options)?.into_iter();
-    let picked = picked.map(|index| (header.names[index].clone(), header.channels[index]));
+    let name = |index: usize| (header.names[index].clone(), header.scales[index]);
+    let picked = picked.map(|index| (name(index), header.channels[index]));
     let (names, columns) = picked.unzip();
     let unit_s = header.time.map(|time| time.1);
     let interval = match header.time {

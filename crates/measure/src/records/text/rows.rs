@@ -19,7 +19,8 @@ const LONGEST_FOOTER: usize = 8;
 
 pub(super) struct RowPlan {
     pub dialect: Dialect,
-    pub names: Vec<String>,
+    /// Names of channels, and the volts of one in each.
+    pub names: Vec<(String, f64)>,
     pub columns: Vec<usize>,
     /// Column of times and their unit in s.
     pub time: Option<(usize, f64)>,
@@ -305,9 +306,9 @@ impl Segments {
         let times = block.times.get(range.clone()).unwrap_or_default();
         let interval = self.interval(&source, times)?;
         let channels = self.plan.names.iter().zip(&block.columns);
-        let channels = channels.map(|(name, column)| Channel {
+        let channels = channels.map(|((name, volts), column)| Channel {
             name: name.clone(),
-            volts: column[range.clone()].to_vec(),
+            volts: column[range.clone()].iter().map(|number| number * volts).collect(),
             range_v: None,
         });
         let channels = channels.collect();

@@ -10,7 +10,9 @@ fn a_column_of_times_is_told_by_name_unit_or_even_steps() {
     assert_eq!(named.time, Some((0, Some(1e-3))));
     assert_eq!(named.names, ["Channel A"]);
     let units = header("Time,A,B\n(us),(mV),(mV)\n\n0,1.5,2\n1,3.5,4\n2,3.5,1\n");
-    assert_eq!(units.time, Some((0, Some(1e-6))));
+    assert_eq!((units.time, units.scales), (Some((0, Some(1e-6))), vec![1e-3, 1e-3]));
+    let mixed = header("t (s),a (V),b (uV),c (Pa),d\n0,1.5,2,1,1\n1,3.5,4,1,1\n2,3.5,1,1,1\n");
+    assert_eq!(mixed.scales, [1.0, 1e-6, 1.0, 1.0]);
     let slashed = header("t/ms;U/V\n0.5;1\n1;2\n1.5;3\n");
     assert_eq!(slashed.time, Some((0, Some(1e-3))));
     let ending = header("time_us,a\n0.5,1\n1,2\n1.5,3\n");
