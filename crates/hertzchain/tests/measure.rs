@@ -89,7 +89,7 @@ fn voltages_are_in_volts_whatever_the_file_has() {
     let rows: String = rows.map(|(i, volt)| format!("{i},{:.4}\n", 1e3 * volt)).collect();
     fs::write(folder.join("shot.csv"), format!("Time (us),CH1 (mV)\n{rows}")).unwrap();
     let shot = &json(&measure(&folder, &["shot.csv", "--json"]))["shots"][0];
-    let found = shot["incident_peak_v"].as_f64().unwrap();
+    let found = shot["incident"]["height_v"].as_f64().unwrap();
     assert!((found - 1.0).abs() < 0.01, "{found}");
 }
 
