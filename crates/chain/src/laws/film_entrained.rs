@@ -270,7 +270,7 @@ struct EntrainedFilm {
     inlet: f64,
     /// l α E*/R*.
     deep: f64,
-    /// D/J over (a y)^{2/3}/a² and how the rim gives way.
+    /// D/J over (a y)^{2/3}/a² and `giving_way`.
     meniscus: f64,
     /// V.
     volume: f64,
@@ -313,7 +313,8 @@ impl EntrainedFilm {
         (x / less, 1.0 - x * (1.0 - less) / less)
     }
 
-    /// How a rim of area a y gives way over one that is wide, of oil that does not thicken.
+    /// What the rim's width and thickened oil make of the rate at which a rim a y relaxes:
+    /// (R* y/a²)^{−5g/3} G^{−m}/(1 + l α E* a/R*).
     fn giving_way(&self, rim: f64, a: f64, thick: f64) -> f64 {
         let narrow = (rim.max(f64::MIN_POSITIVE) * self.radius / (a * a * a)).ln();
         let thicker = if self.inlet > 0.0 { PRESSURE[1] * thick.ln() } else { 0.0 };
