@@ -68,6 +68,8 @@ pub(crate) struct Fault {
     /// The saturation, and the share of the wall's pulse at which it ends.
     pub clip: Option<(Clip, f64)>,
     pub separate: bool,
+    /// Sensitivity of the wall's sensor over the sensor bead's.
+    pub wall_gain: f64,
     pub crosstalk: f64,
     /// Height over that of its pulse, and lead in s, of a bell half as wide before each.
     pub precursor: (f64, f64),
@@ -87,6 +89,7 @@ impl Default for Fault {
             noise_db: 40.0,
             clip: None,
             separate: false,
+            wall_gain: 1.0,
             crosstalk: 0.0,
             precursor: (0.0, 0.0),
             without_return: false,
@@ -111,6 +114,7 @@ pub(crate) fn volts(row: &Row, fault: &Fault) -> Vec<Vec<f64>> {
     for i in 0..sensor.len() {
         sensor[i] += share * bell(row.maxima_s[0], i);
         wall[i] += share * row.wall_height * bell(row.maxima_s[1], i);
+        wall[i] *= fault.wall_gain;
         let both = (sensor[i], wall[i]);
         sensor[i] += fault.crosstalk * both.1;
         wall[i] += fault.crosstalk * both.0;
@@ -121,7 +125,7 @@ pub(crate) fn volts(row: &Row, fault: &Fault) -> Vec<Vec<f64>> {
     };
     for channel in &mut channels {
         if let Some((clip, share)) = fault.clip {
-            let end = share * row.wall_height;
+            let end = share * row.wall_height * fault.wall_gain;
             channel.iter_mut().for_each(|volts| *volts = clip(*volts, end));
         }
         if let Some(low_pass) = fault.low_pass {

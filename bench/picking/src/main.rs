@@ -130,6 +130,17 @@ fn line(name: &str, tally: &Tally) -> String {
     )
 }
 
+/// Wall sensors that are more sensitive than the sensor bead's.
+fn wall_sensors() -> Vec<(String, Fault)> {
+    let at = |wall_gain: f64| {
+        [40.0, 60.0].map(|noise_db| {
+            let name = format!("wall sensor {wall_gain} times as sensitive, {noise_db} dB");
+            (name, Fault { noise_db, wall_gain, ..Fault::default() })
+        })
+    };
+    [2.0, 5.0].into_iter().flat_map(at).collect()
+}
+
 /// Hum of the mains, ramps and steps under the pulses.
 fn drifts() -> Vec<(String, Fault)> {
     let none = Drift::default();
@@ -176,6 +187,13 @@ fn families() -> Vec<(&'static str, Vec<(String, Fault)>)> {
                 (name, Fault { separate: true, crosstalk: 0.1, ..at(db) })
             }),
         ),
+        (
+            "separate",
+            each(&[40.0, 60.0], &|db| {
+                (format!("two channels, {db} dB"), Fault { separate: true, ..at(db) })
+            }),
+        ),
+        ("wall sensor", wall_sensors()),
         (
             "no return",
             each(&[20.0, 30.0, 40.0, 60.0], &|db| {

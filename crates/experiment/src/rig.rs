@@ -61,8 +61,8 @@ record! {
     Actuator "[campaign.actuator]"
     resolution_m_s: f64 = resolution 1.5e-4, positive("m/s"), "step of the speeds that can be programmed; default 0.15 mm/s";
     spread_m_s: f64 = spread 0.003, not_negative("m/s"), "standard deviation of the speed from shot to shot; default 3 mm/s";
-    least_speed_m_s: f64 = least_speed 0.05, positive("m/s"), "slowest shot; default 0.05 m/s";
-    most_speed_m_s: f64 = most_speed 2.5, positive("m/s"), "fastest shot; default 2.5 m/s";
+    least_speed_m_s: f64 = least_speed 0.05, positive("m/s"), "slowest speed that can be programmed; default 0.05 m/s";
+    most_speed_m_s: f64 = most_speed 2.5, positive("m/s"), "fastest speed that can be programmed; default 2.5 m/s";
     placing_m: f64 = placing 20e-6, not_negative("m"), "standard deviation of the place to which the striker is brought back; default 20 um";
 }
 

@@ -107,7 +107,7 @@ fn quantity(unit: &str, limits: &ValueLimits, units: Units) -> Value {
     let Some(object) = schema.as_object_mut() else {
         return schema;
     };
-    // ValueLimits of quantities with a dimension are those of their SI values.
+    // Limits of quantities with a dimension are those of their SI values.
     if unit != "1" && limits.least > 0.0 {
         object.insert("exclusiveMinimum".to_owned(), json!(0.0));
     }

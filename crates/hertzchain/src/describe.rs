@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::options::CheckOptions;
-use crate::{contact, input};
+use crate::{campaign, contact, input};
 use hertzchain_chain::Chain;
 use hertzchain_experiment::{Experiment, Units, Warning};
 use hertzchain_sim::{Group, StudyError};
@@ -36,13 +36,16 @@ pub struct Description {
 /// ```
 ///
 /// # Errors
-/// What the physics rejects, at its place in the experiment; a speed that it can't have.
+/// What the physics rejects, at its place in the experiment; a speed that it can't have; a campaign that no
+/// rig can do.
 pub fn check(experiment: &Experiment, options: &CheckOptions) -> Result<Description, Failure> {
-    described(experiment, options, |experiment, chain| {
+    let mut found = described(experiment, options, |experiment, chain| {
         let mut groups = hertzchain_sim::describe(experiment, chain)?;
         groups.extend(contact::first_yield(chain).filter(|_| experiment.units() == Units::Si));
         Ok(groups)
-    })
+    })?;
+    found.groups.extend(campaign::described(experiment)?);
+    Ok(found)
 }
 
 /// Returns what theory says of a chain: exact solitary wave, normal modes, band gap, restitution.

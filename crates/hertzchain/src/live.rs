@@ -60,7 +60,7 @@ impl LiveMeasurement {
         })
     }
 
-    /// Measures what has appeared or changed, and returns these files.
+    /// Measures what has appeared or changed, and returns these files and those that are gone.
     ///
     /// # Errors
     /// A folder that can't be read.
@@ -73,7 +73,8 @@ impl LiveMeasurement {
             stamped.filter_map(|file| Some((file.clone(), stamp(&file)?))).collect();
         others.retain(|(other, _)| !is_list(other));
         self.notes = measure::passed_over(&self.folder, others);
-        self.measured.retain(|file, _| found.contains_key(file));
+        let gone = self.measured.extract_if(.., |file, _| !found.contains_key(file));
+        let gone: Vec<PathBuf> = gone.map(|(file, _)| file).collect();
         let is_measured = |file: &PathBuf, stamp: &Stamp| {
             self.measured.get(file).is_some_and(|(measured, _)| measured == stamp)
         };
@@ -87,7 +88,7 @@ impl LiveMeasurement {
             let measured = hertzchain_measure::measure(of_file, &self.options, &());
             self.measured.insert(file.clone(), (*stamp, measured));
         }
-        Ok(new.into_iter().map(|(file, _)| file).collect())
+        Ok(new.into_iter().map(|(file, _)| file).chain(gone).collect())
     }
 
     /// Returns what came of a file, once it is measured.

@@ -146,6 +146,39 @@ fn a_stream_is_stored_shot_by_shot_and_measured_as_its_stored_shots_are() {
 }
 
 #[test]
+fn a_stream_of_another_rate_does_not_go_on_behind_the_first() {
+    let (all, ..) = setup("live-rates");
+    let out = all.join("live");
+    let stream = |rate: &str| {
+        let stream = ["-", "--rate", rate, "--level", "3000", "--out", out.to_str().unwrap()];
+        let mut live = Live::start(&stream);
+        live.program.stdin.take().unwrap().write_all(&counts(&SPEEDS[..1])).unwrap_or_default();
+        let mut reported = String::new();
+        live.program.stderr.take().unwrap().read_to_string(&mut reported).unwrap();
+        (live.rest(), reported)
+    };
+    assert_eq!(stream("1MHz").0, (1, true));
+    let (ended, reported) = stream("500kHz");
+    assert_eq!(ended, (0, false));
+    assert!(reported.contains("--rate 1000000 --channels 1, not --rate 500000"), "{reported}");
+    assert_eq!(stream("1MHz").0, (2, true));
+}
+
+#[test]
+fn a_recording_that_is_deleted_leaves_the_tables() {
+    let (all, shots, list) = setup("live-deleted");
+    let (into, out) = (shots.to_str().unwrap(), all.join("live"));
+    let arguments = [into, "--shots", &list, "--out", out.to_str().unwrap(), "--stop-after", STOP];
+    let mut live = Live::start(&arguments);
+    (0..2).for_each(|number| record(&shots, Path::new(&list), number));
+    let _ = [live.line(), live.line()];
+    fs::remove_file(shots.join("shot-0.csv")).unwrap();
+    assert_eq!(live.rest(), (0, true));
+    let table = fs::read_to_string(out.join("shots.csv")).unwrap();
+    assert!(!table.contains("shot-0.csv") && table.contains("shot-1.csv"), "{table}");
+}
+
+#[test]
 fn what_to_measure_next_follows_each_shot() {
     let (_, shots, list) = setup("live-next");
     let model = ["--model", "dry", "--free", "eta", "--stop-after", STOP];

@@ -296,6 +296,20 @@ fn three_channels_of_a_shot_are_one_too_many() {
 }
 
 #[test]
+fn options_that_would_have_no_effect_are_refused() {
+    let folder = folder("idle");
+    let cases: [(&[&str], &str); 3] = [
+        (&["--channel", "2", "--channel", "2"], "--channel 2 twice"),
+        (&["--onset", "0.1"], "--onset is of --method onset"),
+        (&["--wall-polarity", "negative"], "none where one channel sums both sensors"),
+    ];
+    for (options, expected) in cases {
+        let reported = told_of_two_columns(&folder, options);
+        assert!(reported.contains(expected), "{options:?}: {reported}");
+    }
+}
+
+#[test]
 fn lines_of_the_table_that_fit_no_record_are_told() {
     let folder = folder("unmatched");
     write(&folder.join("shot, 1.csv"), &volts(0.5, 1.0));

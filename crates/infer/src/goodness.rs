@@ -42,7 +42,7 @@ pub(crate) const LEAST_BY_CHANCE: f64 = 1e-3;
 /// variance is (3(f − 2)/(f − 4) − 1)/2 times as large as that of normal deviates.
 pub(crate) fn chi_square_of(
     residuals: impl Iterator<Item = (f64, f64)>,
-    fit_result: usize,
+    fitted: usize,
 ) -> Option<ChiSquare> {
     let (mut value, mut spread, mut count) = (0.0, 0.0, 0_usize);
     for (residual, freedom) in residuals {
@@ -51,12 +51,12 @@ pub(crate) fn chi_square_of(
         spread += 0.5 * (3.0 * student - 1.0);
         count += 1;
     }
-    ChiSquare::of(value, count.checked_sub(fit_result)?, spread / count.max(1) as f64)
+    ChiSquare::of(value, count.checked_sub(fitted)?, spread / count.max(1) as f64)
 }
 
 /// The same of a fit.
-pub(crate) fn chi_square_of_fit(fit: &Fit, fit_result: usize) -> Option<ChiSquare> {
-    chi_square_of(fit.residuals.iter().copied().zip(fit.freedoms.iter().copied()), fit_result)
+pub(crate) fn chi_square_of_fit(fit: &Fit, fitted: usize) -> Option<ChiSquare> {
+    chi_square_of(fit.residuals.iter().copied().zip(fit.freedoms.iter().copied()), fitted)
 }
 
 /// Residuals beyond so many standard errors are outliers to a robust fit, up to a share of all.

@@ -285,6 +285,19 @@ fn resolved(counted: &[Timed<'_>], keep_dubious: bool) -> Vec<Option<Flight>> {
     }
 }
 
+fn has_return(flight: &Flight) -> bool {
+    flight.reflected_s.is_some()
+}
+
+/// Where fewer than half of the shots have a return, none counts.
+fn drop_few_returns(resolved: &mut [Option<Flight>]) {
+    let now = resolved.iter().flatten();
+    if 2 * now.clone().filter(|flight| has_return(flight)).count() < now.count() {
+        let flights = resolved.iter_mut().flatten();
+        flights.for_each(|flight| *flight = flight.without_return());
+    }
+}
+
 /// Of the shots of one speed that count by themselves, of so many in `all`.
 fn row(
     counted: &[Timed<'_>],
@@ -292,17 +305,13 @@ fn row(
     all: usize,
     keep_dubious: bool,
 ) -> Option<SpeedRow> {
-    let has_return = |flight: &Flight| flight.reflected_s.is_some();
     let ambiguous = counted.iter().zip(&resolved).filter(|(own, now)| {
         let without = now.as_ref().is_some_and(|now| !has_return(now));
         without && has_return(own.flight)
     });
     let returns_undecided = ambiguous.count();
-    let now = resolved.iter().flatten();
-    let few = 2 * now.clone().filter(|f| has_return(f)).count() < now.count();
-    if few && !keep_dubious {
-        let flights = resolved.iter_mut().flatten();
-        flights.for_each(|flight| *flight = flight.without_return());
+    if !keep_dubious {
+        drop_few_returns(&mut resolved);
     }
     let pairs = counted.iter().zip(&resolved);
     let counted: Vec<Timed<'_>> = pairs

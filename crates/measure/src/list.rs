@@ -13,6 +13,8 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShotList {
     entries: Vec<ListEntry>,
+    /// Titles of columns that are not read.
+    unread: Vec<String>,
     by_name: HashMap<OsString, Vec<usize>>,
 }
 
@@ -45,6 +47,10 @@ const TITLES: [&[&str]; 10] = [
     &["pick error", "pick error s"],
 ];
 
+/// Usual titles of columns beside `file`.
+const COLUMNS: &str =
+    "shot, case, speed, speed error, counts, incident pick, wall pick, reflected pick, pick error";
+
 struct ListColumns {
     places: [Option<usize>; 10],
     decimal_comma: bool,
@@ -74,7 +80,10 @@ impl ShotList {
                 entries.push(entry);
             }
         }
-        Ok(Self { entries, by_name })
+        let is_read = |column: &usize| columns.places.contains(&Some(*column));
+        let unread = titles.iter().enumerate().filter(|(column, _)| !is_read(column));
+        let unread = unread.map(|(_, title)| title.to_owned()).filter(|title| !title.is_empty());
+        Ok(Self { entries, unread: unread.collect(), by_name })
     }
 
     /// Whether a text begins as such a table does: its titles are those of files and of something
@@ -114,7 +123,7 @@ impl ShotList {
 
     /// What lines and shots do not find in each other, but for files that were refused.
     pub(crate) fn unmatched(&self, files: &[PathBuf], shots: &[Shot]) -> Vec<String> {
-        let (mut used, mut unmatched) = (HashSet::new(), Vec::new());
+        let (mut used, mut unmatched) = (HashSet::new(), self.unread());
         for shot in shots {
             if let Err(error @ MeasureError::List(_)) = &shot.flight {
                 unmatched.push(error.to_string());
@@ -128,6 +137,15 @@ impl ShotList {
         let unused = self.entries.iter().filter(|entry| !used.contains(&entry.line));
         unmatched.extend(unused.filter_map(|entry| entry.unused(files, shots)));
         unmatched
+    }
+
+    /// A line on the columns that are not read, if there are any.
+    fn unread(&self) -> Vec<String> {
+        let names = |titles: &[String]| titles.join(", ");
+        let more = if self.unread.len() > SHOWN { ", …" } else { "" };
+        let shown = names(self.unread.get(..SHOWN).unwrap_or(&self.unread));
+        let line = format!("columns that are not read: {shown}{more}; these are: {COLUMNS}");
+        Vec::from_iter((!self.unread.is_empty()).then_some(line))
     }
 }
 
@@ -149,12 +167,17 @@ fn reader(text: &str) -> (csv::Reader<impl Read>, bool) {
 
 /// Which columns have which of [`TITLES`].
 fn places(titles: &StringRecord) -> [Option<usize>; 10] {
+    TITLES.map(|names| called(titles, names).next())
+}
+
+/// The columns with one of these titles.
+fn called(titles: &StringRecord, names: &[&str]) -> impl Iterator<Item = usize> {
     let plain = |title: &str| {
         let name = title.split(['(', '[']).next().unwrap_or_default();
         name.trim().to_lowercase().replace('_', " ")
     };
-    let titles: Vec<String> = titles.iter().map(plain).collect();
-    TITLES.map(|names| titles.iter().position(|title| names.contains(&&**title)))
+    let is = move |title: &str| names.contains(&&*plain(title));
+    titles.iter().enumerate().filter(move |(_, title)| is(title)).map(|(column, _)| column)
 }
 
 const SHOWN: usize = 6;
@@ -234,11 +257,18 @@ impl ListColumns {
                 "the column {title:?} has another unit: speeds and their errors are in m/s, picks in s"
             )));
         }
+        for names in TITLES {
+            let columns: Vec<usize> = called(titles, names).collect();
+            if let [one, other, ..] = columns[..] {
+                return Err(MeasureError::List(format!(
+                    "the columns {:?} and {:?} are both taken for {:?}; leave one out",
+                    &titles[one], &titles[other], names[0]
+                )));
+            }
+        }
         let places = places(titles);
-        let detail = "the first line must name the columns: file, and any of shot, case, speed, speed error, \
-             counts, incident pick, wall pick, reflected pick, pick error";
-        let no_file = || MeasureError::List(detail.to_owned());
-        places[0].ok_or_else(no_file)?;
+        let detail = format!("the first line must name the columns: file, and any of {COLUMNS}");
+        places[0].ok_or(MeasureError::List(detail))?;
         Ok(Self { places, decimal_comma })
     }
 

@@ -48,7 +48,7 @@ pub enum Cut {
     /// Where several shots are plain in one record.
     #[default]
     Plain,
-    /// Never: a record is a shot.
+    /// Never: a record is a shot, flagged where it holds several.
     Never,
     /// Where they pass a level.
     Level(Level),
@@ -201,21 +201,22 @@ fn gather(
 }
 
 fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<Done>> {
-    let searched = options.cutting == Cut::Plain && options.reading.parts == Parts::Whole;
+    let searched =
+        !matches!(options.cutting, Cut::Level(_)) && options.reading.parts == Parts::Whole;
     let one = |record: &Record| {
         let found = match searched {
             true => content(&record.channels),
             false => Content::One,
         };
-        if let Content::Plain(ranges) = found {
-            let part = |(from, to)| {
+        if let (Cut::Plain, Content::Plain(ranges)) = (options.cutting, &found) {
+            let part = |&(from, to): &(usize, usize)| {
                 let part = record.part(from, to - from);
                 (Shot::measure(&part, options), Some((from, to)))
             };
-            return ranges.into_iter().map(part).collect();
+            return ranges.iter().map(part).collect();
         }
         let mut shot = Shot::measure(record, options);
-        shot.holds_several = found == Content::Mixed;
+        shot.holds_several = found != Content::One;
         vec![(shot, None)]
     };
     let watched = |record: &Record| {
@@ -294,7 +295,7 @@ impl Measurement {
         }));
         notes.extend(several.then(|| {
             "several shots with quiet between them were cut apart; --whole keeps a record one shot, \
-             --level and --shot-samples cut otherwise"
+             which then counts in no mean, --level and --shot-samples cut otherwise"
                 .to_owned()
         }));
         notes.iter().for_each(|note| self.note(note, &record.file));

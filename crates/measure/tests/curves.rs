@@ -372,7 +372,11 @@ fn several_shots_in_one_recording_are_cut_apart_where_that_is_plain() {
         assert_eq!(shot.flags(), "");
     }
     assert!(found.notes.iter().any(|note| note.text.contains("--whole")));
-    assert_eq!(cut(&file, Cut::Never).shots.len(), 1);
+    // One record all the same: no time between pulses of two shots counts.
+    let one = cut(&file, Cut::Never).shots;
+    assert_eq!(one.len(), 1);
+    assert_eq!(one[0].reasons(false)[..1], ["no-speed"]);
+    assert!(one[0].holds_several && one[0].is_dubious());
 }
 
 #[test]

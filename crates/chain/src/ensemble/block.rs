@@ -68,6 +68,21 @@ pub(super) struct Block<'a, N, const W: usize> {
     pub bodies_looked_at: u64,
 }
 
+/// A number of every body of all lanes, in so many places; lanes alternate.
+fn scattered<N: Number<W>, const W: usize>(
+    systems: &[&System],
+    places: usize,
+    of: fn(&System) -> &[f64],
+) -> Aligned<N> {
+    let mut values = Aligned::of(N::default(), places);
+    for (lane, system) in systems.iter().enumerate() {
+        for (j, value) in of(system).iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            values[j * systems.len() + lane] = N::of(*value);
+        }
+    }
+    values
+}
+
 impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
     /// Shots of systems that share their shape; one or `W` of them.
     pub(super) fn new(
@@ -86,18 +101,8 @@ impl<'a, N: Number<W>, const W: usize> Block<'a, N, W> {
         };
         let shared = (lanes, chains.len());
         let flat = (chunks::<W>(bodies, lanes) + 1) * W;
-        let scatter = |of: fn(&System) -> &[f64]| {
-            let mut values = Aligned::of(N::default(), flat);
-            for (lane, system) in systems.iter().enumerate() {
-                let moved = of(system).iter().enumerate().filter(|(_, value)| **value != 0.0);
-                for (j, value) in moved {
-                    values[j * lanes + lane] = N::of(*value);
-                }
-            }
-            values
-        };
-        let x = scatter(|system| &system.displacement_m);
-        let v = scatter(|system| &system.velocity_m_s);
+        let x: Aligned<N> = scattered(systems, flat, |system| &system.displacement_m);
+        let v: Aligned<N> = scattered(systems, flat, |system| &system.velocity_m_s);
         let mut loads = chains.iter().flat_map(|system| system.static_force_n.iter());
         let loaded = loads.any(|&force| force != 0.0);
         let acts = first.slope_m_s2 != 0.0 || first.spring.is_some() || first.pendulum_per_s2 > 0.0;

@@ -293,24 +293,37 @@ impl Signal {
         self.rises_on = false;
     }
 
-    /// Adds the maxima of one step, and the one between it and the last.
-    fn look_for_maxima(&mut self, piece: &Piece<'_>, stretch: &Stretch) {
+    /// The slopes at a step's start and end, and its first value; where the signal begins with an
+    /// infinite slope, after what it changes by at first if that is above a floor.
+    fn end_slopes(
+        &self,
+        piece: &Piece<'_>,
+        stretch: &Stretch,
+        sharp_start: bool,
+        floor: f64,
+    ) -> (f64, [f64; 2]) {
         let slopes = stretch.end_slopes();
         let [mut start_slope, mut end_slope] = [(0.0, slopes[0]), (1.0, slopes[1])]
             .map(|(theta, slope)| self.slope(piece, theta, slope));
-        let [start, .., end] = stretch.values;
-        let floor = JUMP.max(OF_CUT * piece.cut_tolerance()) * self.largest;
-        let reversals = piece.reversals(self.sensor);
-        let sharp_rises = piece.sharp_rises(self.sensor, reversals);
-        let mut first_value = start;
-        if sharp_rises.contains(&Some(0.0))
-            && let Some(change) = first_change(piece, self.sensor, floor)
-        {
-            (start_slope, first_value) = (change, start + change);
+        let mut first_value = stretch.values[0];
+        if sharp_start && let Some(change) = first_change(piece, self.sensor, floor) {
+            (start_slope, first_value) = (change, first_value + change);
         }
         if end_slope <= 0.0 && piece.parts_at_end(self.sensor) {
             end_slope = last_rise(piece, self.sensor, floor).unwrap_or(end_slope);
         }
+        (first_value, [start_slope, end_slope])
+    }
+
+    /// Adds the maxima of one step, and the one between it and the last.
+    fn look_for_maxima(&mut self, piece: &Piece<'_>, stretch: &Stretch) {
+        let [start, .., end] = stretch.values;
+        let floor = JUMP.max(OF_CUT * piece.cut_tolerance()) * self.largest;
+        let reversals = piece.reversals(self.sensor);
+        let sharp_rises = piece.sharp_rises(self.sensor, reversals);
+        let sharp_start = sharp_rises.contains(&Some(0.0));
+        let (first_value, [start_slope, end_slope]) =
+            self.end_slopes(piece, stretch, sharp_start, floor);
         // Before a signal is first seen, and after silence, it was 0.
         let (time_s, value, slope) = self.before.unwrap_or((stretch.start_s, 0.0, 0.0));
         let rises = slope > 0.0 || start > value + floor;

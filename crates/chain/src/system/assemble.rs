@@ -14,8 +14,28 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
     check_values(chain)?;
     let pairs: Vec<Option<BeadPair>> = (0..=chain.beads.len()).map(|c| chain.pair(c)).collect();
     let (sections, section_of) = sections(chain, &pairs)?;
+    let mut system = at_rest(chain, sections, section_of);
+    let has = |nature| {
+        let mut terms = system.sections.iter().flat_map(SectionColumns::terms);
+        terms.any(|term| term.law.info().nature == nature)
+    };
+    (system.has_memory, system.has_states) = (has(Nature::ElasticPlastic), has(Nature::WithState));
+    if system.sections.iter().any(|section| section.bridge.is_some()) {
+        // The striker has not touched bead 1 yet.
+        system.bridged = (0..=chain.beads.len()).map(|c| c > 0 || !system.has_striker).collect();
+    }
+    system.inverse_mass = system.mass_kg.iter().map(|mass| mass.recip()).collect();
+    settle(chain, &pairs, &mut system)?;
+    set_in_motion(chain, &mut system);
+    system.kinds = kinds(&system, &pairs).into();
+    system.scales = scales(&system, &system.kinds);
+    Ok(system)
+}
+
+/// A chain's columns before its equilibrium and motion are known.
+fn at_rest(chain: &Chain, sections: Vec<SectionColumns>, section_of: Vec<u32>) -> System {
     let driven = matches!(chain.start, Start::Driven { .. });
-    let mut system = System {
+    System {
         mass_kg: masses(chain).into(),
         inverse_mass: Arc::default(),
         offset_m: vec![f64::NEG_INFINITY; chain.beads.len() + 1].into(),
@@ -57,22 +77,7 @@ pub(super) fn assemble(chain: &Chain) -> Result<System, ChainError> {
             crossing_s: 1.0,
         },
         kinds: Arc::default(),
-    };
-    let has = |nature| {
-        let mut terms = system.sections.iter().flat_map(SectionColumns::terms);
-        terms.any(|term| term.law.info().nature == nature)
-    };
-    (system.has_memory, system.has_states) = (has(Nature::ElasticPlastic), has(Nature::WithState));
-    if system.sections.iter().any(|section| section.bridge.is_some()) {
-        // The striker has not touched bead 1 yet.
-        system.bridged = (0..=chain.beads.len()).map(|c| c > 0 || !system.has_striker).collect();
     }
-    system.inverse_mass = system.mass_kg.iter().map(|mass| mass.recip()).collect();
-    settle(chain, &pairs, &mut system)?;
-    set_in_motion(chain, &mut system);
-    system.kinds = kinds(&system, &pairs).into();
-    system.scales = scales(&system, &system.kinds);
-    Ok(system)
 }
 
 /// Sections in order with their columns, and the section of every contact.

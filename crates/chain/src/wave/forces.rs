@@ -22,7 +22,7 @@ pub(crate) enum Gates {
 #[derive(Clone, Debug)]
 pub(crate) struct Pass {
     /// Overlap, negative across a gap.
-    pub gap: Vec<f64>,
+    pub signed_overlap: Vec<f64>,
     pub overlap: Vec<f64>,
     pub root: Vec<f64>,
     pub rate: Vec<f64>,
@@ -48,7 +48,7 @@ impl Pass {
     pub(super) fn new(system: &System) -> Self {
         let contacts = || vec![0.0; system.contacts()];
         Self {
-            gap: contacts(),
+            signed_overlap: contacts(),
             overlap: contacts(),
             root: contacts(),
             rate: contacts(),
@@ -105,7 +105,7 @@ impl Pass {
         let offset = &system.offset_m[contacts.clone()];
         let (left, right) = (&x[first..end], &x[first + 1..=end]);
         let (before, after) = (&v[first..end], &v[first + 1..=end]);
-        let gap = &mut self.gap[contacts.clone()][..n];
+        let gap = &mut self.signed_overlap[contacts.clone()][..n];
         let overlap = &mut self.overlap[contacts.clone()][..n];
         let root = &mut self.root[contacts.clone()][..n];
         let rate = &mut self.rate[contacts][..n];
@@ -149,7 +149,7 @@ impl Pass {
     /// Whether any gate disagrees with the overlap of the last pass: closed
     /// across a gap or open at an overlap.
     pub(super) fn disagrees(&self, contacts: Range<usize>) -> bool {
-        let gates = self.gap[contacts.clone()].iter().zip(&self.touching[contacts]);
+        let gates = self.signed_overlap[contacts.clone()].iter().zip(&self.touching[contacts]);
         let wrong = gates.map(|(gap, touching)| u32::from(gap * (2.0 * touching - 1.0) < 0.0));
         wrong.sum::<u32>() > 0
     }
@@ -167,7 +167,8 @@ impl Pass {
     /// Closed ⇔ δ > 0, or δ = 0 and approaching.
     fn look_at_gates(&mut self, contacts: Range<usize>) {
         for c in contacts {
-            let closed = self.gap[c] > FLUSH || (self.gap[c] >= 0.0 && self.rate[c] > 0.0);
+            let closed = self.signed_overlap[c] > FLUSH
+                || (self.signed_overlap[c] >= 0.0 && self.rate[c] > 0.0);
             self.passing[c] = f64::from(u8::from(closed));
             self.touching[c] = self.passing[c];
         }
@@ -246,7 +247,8 @@ impl Pass {
             return;
         }
         for c in contacts {
-            self.pull[c] = if state.bridged[c] { system.pull_n(c, self.gap[c]) } else { 0.0 };
+            self.pull[c] =
+                if state.bridged[c] { system.pull_n(c, self.signed_overlap[c]) } else { 0.0 };
             self.dynamic[c + 1] += self.pull[c];
         }
     }

@@ -99,15 +99,15 @@ impl GateWatch {
     /// The change a contact has made by the end of a step, estimated from the
     /// force pass there.
     fn change(&self, system: &System, state: &WaveState, pass: &Pass, c: usize) -> Option<Change> {
-        let gap = pass.gap[c];
+        let overlap = pass.signed_overlap[c];
         let clipped = system.tension == Tension::Clipped;
         match state.mode[c] {
-            ContactMode::Open if gap > 0.0 => Some(Change::Overlap(ContactMode::Closed)),
+            ContactMode::Open if overlap > 0.0 => Some(Change::Overlap(ContactMode::Closed)),
             ContactMode::Open => {
-                let torn = state.is_bridged(c) && system.is_beyond_bridge(c, gap);
+                let torn = state.is_bridged(c) && system.is_beyond_bridge(c, overlap);
                 torn.then_some(Change::Rupture)
             }
-            _ if gap < 0.0 => Some(Change::Overlap(ContactMode::Open)),
+            _ if overlap < 0.0 => Some(Change::Overlap(ContactMode::Open)),
             ContactMode::Closed if clipped && pass.uncut(c) < 0.0 => {
                 Some(Change::Force(ContactMode::Cut))
             }
@@ -127,9 +127,9 @@ impl GateWatch {
             return true;
         }
         let depth = match change {
-            Change::Overlap(_) => pass.gap[c].abs(),
+            Change::Overlap(_) => pass.signed_overlap[c].abs(),
             Change::Force(_) | Change::Turn | Change::State | Change::Rupture => {
-                pass.gap[c].max(0.0)
+                pass.signed_overlap[c].max(0.0)
             }
         };
         let closed =
@@ -230,7 +230,7 @@ impl GateWatch {
     ) -> bool {
         let size = state.x[c].abs() + state.x[c + 1].abs() + system.offset_m[c].abs();
         let landing = self.landing.max(ROUNDING * size);
-        matches!(change, Change::Overlap(_)) && pass.gap[c].abs() <= landing
+        matches!(change, Change::Overlap(_)) && pass.signed_overlap[c].abs() <= landing
     }
 
     /// Sets the modes at the end of an accepted step; `aimed` is the change
@@ -288,8 +288,7 @@ impl GateWatch {
     }
 }
 
-/// Where in a step a change happens: bisection with secant steps on the
-/// dense output, to the resolution at which the redone step decides anyway.
+/// Where in a step a change happens, on the dense output, to the resolution at which the redone step decides anyway.
 fn locate(piece: &Piece<'_>, contact: usize, change: Change) -> f64 {
     // Negative before the change, positive after it.
     let signed = |theta: f64| {
@@ -319,6 +318,8 @@ pub(crate) fn bracketed_root(
     width: f64,
 ) -> f64 {
     let (mut f_low, mut f_high) = (f(low), f(high));
+    // Whether the last step has moved the lower end; only an end that stays twice is weighed down.
+    let mut moved_low = None;
     for _ in 0..200 {
         if high - low <= width || f_high <= 0.0 {
             break;
@@ -327,13 +328,14 @@ pub(crate) fn bracketed_root(
         let inside = guess > low && guess < high;
         let middle = if inside { guess } else { 0.5 * (low + high) };
         let value = f(middle);
-        if value < 0.0 {
-            (low, f_low) = (middle, value);
-            f_high *= 0.5;
+        let moves_low = value < 0.0;
+        let weight = if moved_low == Some(moves_low) { 0.5 } else { 1.0 };
+        if moves_low {
+            (low, f_low, f_high) = (middle, value, weight * f_high);
         } else {
-            (high, f_high) = (middle, value);
-            f_low *= 0.5;
+            (high, f_high, f_low) = (middle, value, weight * f_low);
         }
+        moved_low = Some(moves_low);
     }
     high
 }

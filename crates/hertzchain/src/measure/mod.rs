@@ -227,6 +227,13 @@ pub fn options(arguments: &Arguments, rig: Option<&Experiment>) -> Result<Option
                 .to_owned(),
         ));
     }
+    if let [one, other] = &reading.channel[..]
+        && one == other
+    {
+        return Err(Failure::User(format!(
+            "--channel {one} twice: expected the sensor bead's and the wall's; once, if it sums both"
+        )));
+    }
     let high_pass_hz = ac_coupling_hz(&arguments.picking, rig);
     Ok(Options {
         keep_droop: high_pass_hz == Some(0.0),
@@ -315,17 +322,29 @@ fn measuring(
             beads: beads.or_else(of_rig),
             ..FindOptions::default()
         },
-        method: method(picking),
+        method: method(picking)?,
         high_pass_s: high_pass_hz.filter(|hz| *hz > 0.0).map(|hz| (TAU * hz).recip()),
         low_pass: given(picking.smooth).map(|cutoff_hz| LowPass { cutoff_hz, order: ORDER }),
         bandwidth: bandwidth(picking, rig)?,
         mains_hz: given(picking.mains),
         calibration: SensorCalibration {
-            sensitivities_v_n: picking
-                .sensitivity
-                .map(|sensor| [sensor.0, picking.wall_sensitivity.map_or(sensor.0, |wall| wall.0)]),
+            sensitivities_v_n: sensitivities_v_n(picking, rig),
             skew_s: picking.skew.map_or(0.0, |skew| skew.0),
         },
+    })
+}
+
+/// Sensitivities of both sensors: an option's, or a rig's of unlike sensors, whose ratios of peaks are
+/// otherwise none of forces.
+fn sensitivities_v_n(picking: &Picking, rig: Option<&Experiment>) -> Option<[f64; 2]> {
+    let given = picking
+        .sensitivity
+        .map(|sensor| [sensor.0, picking.wall_sensitivity.map_or(sensor.0, |wall| wall.0)]);
+    given.or_else(|| {
+        let amplifier = &rig?.campaign().amplifier;
+        let charges_c_n = [amplifier.sensitivity_c_n, amplifier.wall_sensitivity_c_n];
+        let unlike = charges_c_n[0] != charges_c_n[1];
+        unlike.then(|| charges_c_n.map(|charge_c_n| amplifier.gain_v_c * charge_c_n))
     })
 }
 
@@ -359,15 +378,23 @@ fn bandwidth(picking: &Picking, rig: Option<&Experiment>) -> Result<Option<Bandw
     Ok(Some(Bandwidth { corner_hz, order, bessel: order > 1 && kind == Some("bessel") }))
 }
 
-fn method(picking: &Picking) -> Method {
-    match picking.method {
+/// Share of its height at which a pulse has its onset.
+const ONSET: f64 = 0.5;
+
+fn method(picking: &Picking) -> Result<Method, Failure> {
+    if picking.onset.is_some() && picking.method != MethodName::Onset {
+        return Err(Failure::User("--onset is of --method onset, and no other".to_owned()));
+    }
+    Ok(match picking.method {
         MethodName::Local => Method::default(),
-        MethodName::Onset => Method::Onset { fraction: picking.onset.0 },
+        MethodName::Onset => {
+            Method::Onset { fraction: picking.onset.map_or(ONSET, |share| share.0) }
+        }
         MethodName::Correlation => Method::CrossCorrelation,
         MethodName::Shape => {
             Method::MatchedShape { shape: Shape::cos_power(POWER), width: FIT_WIDTHS }
         }
-    }
+    })
 }
 
 pub(crate) fn grouping(arguments: &Arguments) -> Grouping {

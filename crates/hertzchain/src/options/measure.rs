@@ -124,7 +124,7 @@ pub struct ReadingOptions {
     /// Cut recordings into shots where they pass so many volts; --shot-samples is then their length, else 10 ms
     #[arg(long, value_name = "VOLTS", allow_hyphen_values = true)]
     pub level: Option<Voltage>,
-    /// Take every record for one shot, also where several with quiet between them are plain
+    /// Take every record for one shot; such that hold several are flagged and count in no mean
     #[arg(long, conflicts_with_all = ["level", "shot_samples"])]
     pub whole: bool,
     /// What the first axis of a two-dimensional array is; by its shape when absent
@@ -139,9 +139,9 @@ pub struct PickOptions {
     /// How a pulse is timed; docs/explanation/picking.md says what each is worth
     #[arg(long, value_enum, value_name = "NAME", default_value = "local")]
     pub method: MethodName,
-    /// Share of its height at which `onset` times a pulse
-    #[arg(long, value_name = "SHARE", default_value = "0.5")]
-    pub onset: Share,
+    /// Share of its height at which --method onset times a pulse; 0.5 when absent
+    #[arg(long, value_name = "SHARE")]
+    pub onset: Option<Share>,
     /// Number N of beads; with --sensor bounds when pulses can come
     #[arg(long, value_name = "COUNT", requires = "sensor")]
     pub beads: Option<Count>,

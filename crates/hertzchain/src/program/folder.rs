@@ -3,8 +3,9 @@
 use crate::program::{Failure, print};
 use hertzchain_figures::Figure;
 use hertzchain_measure::records::Files;
+use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Resolution of PNG pictures in dots per inch.
 const DPI: f64 = 300.0;
@@ -17,6 +18,8 @@ pub(crate) struct Folder {
     free: Vec<String>,
     /// Whether files of earlier runs may be replaced.
     replace: bool,
+    /// Files that not every run has: those of an earlier run go when this one's come.
+    optional: &'static [&'static str],
 }
 
 impl Folder {
@@ -35,7 +38,12 @@ impl Folder {
         let free = |name: &&str| require_free(&path.join(name), "--out", replace);
         names.iter().try_for_each(free)?;
         let free = names.iter().map(|&name| name.to_owned()).collect();
-        Ok(Self { files: Files::within(path).map_err(refused)?, free, replace })
+        Ok(Self { files: Files::within(path).map_err(refused)?, free, replace, optional: &[] })
+    }
+
+    /// The same of a verb that writes these files, or pictures without an ending, in some runs only.
+    pub(crate) fn with_optional(self, optional: &'static [&'static str]) -> Self {
+        Self { optional, ..self }
     }
 
     /// Writes a file that gets its name with all others.
@@ -94,10 +102,25 @@ impl Folder {
         self.files.names().collect()
     }
 
+    /// Optional files that this run does not have.
+    fn old_files(&self) -> Vec<PathBuf> {
+        let all = self.optional.iter().flat_map(|name| match name.contains('.') {
+            true => vec![(*name).to_owned()],
+            false => vec![format!("{name}.svg"), format!("{name}.png")],
+        });
+        let old = all.filter(|name| !self.names().contains(&name.as_str()));
+        old.map(|name| self.path().join(name)).collect()
+    }
+
     /// Gives all files their names; returns them, one path a line.
     pub(crate) fn finish(self) -> Result<String, Failure> {
+        let old = if self.replace { self.old_files() } else { Vec::new() };
         let files = self.files.finish();
         let files = files.map_err(|error| Failure::Ours(format!("cannot name a file: {error}")))?;
+        for old in old {
+            // One that can't be removed was not in the way of this run's.
+            let _ = fs::remove_file(old);
+        }
         let lines = files.iter().map(|path| format!("  {}\n", path.display()));
         Ok(lines.collect())
     }

@@ -5,6 +5,8 @@ use hertzchain_chain::laws;
 use hertzchain_experiment::Experiment;
 use std::f64::consts::FRAC_PI_2;
 
+const GRAVITY: &str = "track.gravity";
+
 /// A change of an exponent that matters.
 pub(super) const EXPONENT_SCALE: f64 = 0.1;
 
@@ -31,6 +33,9 @@ fn derived(experiment: &Experiment, found: &Found) -> Option<f64> {
     };
     if path == LOW_PASS {
         return Some(experiment.campaign().amplifier.low_pass_hz);
+    }
+    if path == GRAVITY {
+        return Some(experiment.chain(None).ok()?.0.gravity_m_s2);
     }
     if let Some(material) = path.strip_suffix("bulk_viscosity") {
         return experiment.get(&format!("{material}shear_viscosity")).ok();

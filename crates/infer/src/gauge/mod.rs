@@ -82,7 +82,10 @@ impl Gauge {
     pub fn new(chains: &Chains<'_>, dry: Data, wet: Data) -> Result<Self, InferError> {
         let model = |experiment: &Experiment, more: &[&str]| -> Result<Model, InferError> {
             let find = |name: &str| FreeNumber::find(experiment, name, None);
-            let free = chains.free.iter().map(|name| find(name));
+            let remedy = |error| {
+                InferError::Input(format!("{error}; --dry-free names what is free in the dry row"))
+            };
+            let free = chains.free.iter().map(|name| find(name).map_err(remedy));
             let known = chains.systematic.iter();
             let known = known.map(|(name, sd)| FreeNumber::systematic(experiment, name, *sd));
             let own = chains.own.iter().map(|name| find(name));

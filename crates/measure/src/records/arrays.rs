@@ -151,8 +151,9 @@ pub(crate) trait Arrays {
 
     fn records(&self, name: &str, interval_s: f64, options: &ReadOptions) -> Result<Raw>;
 
-    fn stated_s(&self) -> Option<f64> {
-        None
+    /// Intervals that attributes state: as such, and by a rate.
+    fn stated_s(&self) -> [Option<f64>; 2] {
+        [None; 2]
     }
 
     /// Error of a file that ends early, which is reported before a rate is asked for.
@@ -177,11 +178,16 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
     let of_interval_s = first(values(INTERVALS)?);
     let differ =
         |(one, other): &(f64, f64)| options.rate_hz.is_none() && (one / other - 1.0).abs() > SAME;
-    let both = of_rate_s.zip(of_interval_s).filter(differ);
+    let [by_interval_s, by_rate_s] = match of_interval_s.or(of_rate_s) {
+        Some(_) => [None; 2],
+        None => arrays.stated_s(),
+    };
+    let both = of_rate_s.or(by_rate_s).zip(of_interval_s.or(by_interval_s)).filter(differ);
     let stated_s = of_interval_s
         .or(of_rate_s)
         .or(first(values(&[PERIOD])?.filter(|it| it.len() == 1 && it[0] < LONGEST_S)))
-        .or_else(|| arrays.stated_s())
+        .or(by_interval_s)
+        .or(by_rate_s)
         .or(step(times_s));
     let mut note = match (stated_s, of(TIMES)) {
         (None, Some(name)) => seconds_assumed(name, None, options),

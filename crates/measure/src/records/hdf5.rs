@@ -232,7 +232,7 @@ impl Arrays for Datasets {
         }))
     }
 
-    fn stated_s(&self) -> Option<f64> {
+    fn stated_s(&self) -> [Option<f64>; 2] {
         let number = |names: &[&str]| {
             let datasets = self.names.keys().filter_map(|name| self.dataset(name).ok());
             let values = |of: &H5Dataset| {
@@ -245,10 +245,14 @@ impl Arrays for Datasets {
         let bytes = || beginning(&self.file, SEARCHED).unwrap_or_default();
         let of_groups = |bytes: Vec<u8>| {
             let first = |names: &[&str]| names.iter().find_map(|n| attribute_anywhere(&bytes, n));
-            first(INTERVALS).or_else(|| first(RATES).map(f64::recip))
+            [first(INTERVALS), first(RATES).map(f64::recip)]
         };
-        let of_datasets = number(INTERVALS).or_else(|| number(RATES).map(f64::recip));
-        of_datasets.or_else(|| of_groups(bytes())).filter(|step| step.is_finite() && *step > 0.0)
+        let of_datasets = [number(INTERVALS), number(RATES).map(f64::recip)];
+        let stated = match of_datasets {
+            [None, None] => of_groups(bytes()),
+            stated => stated,
+        };
+        stated.map(|step| step.filter(|step| step.is_finite() && *step > 0.0))
     }
 }
 

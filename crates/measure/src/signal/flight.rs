@@ -36,7 +36,7 @@ pub struct SignalOptions {
     pub calibration: SensorCalibration,
 }
 
-/// SensorCalibration of the sensor bead's and the wall's sensor. Errors of it are those of a fit's systematic
+/// Calibration of the sensor bead's and the wall's sensor. Errors of it are those of a fit's systematic
 /// parameters, not of a shot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensorCalibration {
@@ -92,6 +92,10 @@ pub fn measure(
         MeasureError::require(accepted, "mains frequency in Hz", hz, "a number from 10 to 1000")?;
     }
     let find = &options.find;
+    let sign = if find.wall_polarity == Polarity::Negative { -1.0 } else { 1.0 };
+    let accepted = find.wall_polarity == Polarity::Auto || !channels.is_summed();
+    let expected = "none where one channel sums both sensors; name the two channels";
+    MeasureError::require(accepted, "polarity of the wall's channel", sign, expected)?;
     let polarities = [find.polarity, find.wall_polarity];
     let raw = channels.both();
     let count = if channels.is_summed() { 1 } else { 2 };
@@ -125,16 +129,8 @@ pub fn measure(
     options.spread_clipping(&mut found, interval_s);
     let changed = options.high_pass_s.is_some() || options.low_pass.is_some();
     let ranges = if changed { [None; 2] } else { find.ranges(channels) };
-    let corrections = (ranges, options.bandwidth);
-    let picks = pick(channels, interval_s, &found, &options.method, corrections);
-    let (picks, mut samples) = match picks {
-        Ok((picks, samples)) => (Ok(picks), samples),
-        Err(error) => (Err(error), [const { None }; 3]),
-    };
-    let slow = (&drifts[..], &tones[..]);
-    let calibrated =
-        |picks| with_drift(picks, &mut samples, slow, interval_s).calibrated(options.calibration);
-    let flight = picks.map(calibrated).and_then(Picks::in_order).map(Picks::flight);
+    let picks = pick(channels, interval_s, &found, &options.method, (ranges, options.bandwidth));
+    let (flight, samples) = timed(picks, (&drifts, &tones), interval_s, options.calibration);
     let none_reflected = flight.as_ref().is_ok_and(|f| f.reflected_s.is_none());
     let not_picked = none_reflected && found.reflected.is_some();
     found.flag(not_picked.then_some(QualityFlag::NotPicked(PulseKind::Reflected)));
@@ -204,6 +200,25 @@ fn drift(
     let pulses: Vec<Pulse> = found.pulses().filter(is_here).copied().collect();
     let time = wall.at.checked_sub(incident.at)?;
     Detrended::new(&channels[which], calm, &pulses, time as f64)
+}
+
+type AboutPulses = [Option<Box<PulseSamples>>; 3];
+
+/// Times of flight from picked pulses, whose errors hold what the slow baseline leaves open.
+fn timed(
+    picks: Result<(Picks, AboutPulses)>,
+    slow: (&[Option<Detrended>], &[Option<Tones>]),
+    interval_s: f64,
+    calibration: SensorCalibration,
+) -> (Result<Flight>, AboutPulses) {
+    let (picks, mut samples) = match picks {
+        Ok((picks, samples)) => (Ok(picks), samples),
+        Err(error) => (Err(error), [const { None }; 3]),
+    };
+    let calibrated =
+        |picks| with_drift(picks, &mut samples, slow, interval_s).calibrated(calibration);
+    let flight = picks.map(calibrated).and_then(Picks::in_order).map(Picks::flight);
+    (flight, samples)
 }
 
 fn with_drift(

@@ -138,13 +138,13 @@ pub struct ChiSquare {
     pub probability: f64,
 }
 
-/// Chi-square of measured points against a curve's values at the same abscissas, `fit_result` of whose
+/// Chi-square of measured points against a curve's values at the same abscissas, `fitted` of whose
 /// parameters were found from these points.
 ///
 /// `None` if the numbers of points differ, a number is not finite or a σ not positive, or no degree
 /// of freedom is left.
-pub fn chi_square(measured: &[Estimate], expected: &[f64], fit_result: usize) -> Option<ChiSquare> {
-    let freedom = measured.len().checked_sub(fit_result)?;
+pub fn chi_square(measured: &[Estimate], expected: &[f64], fitted: usize) -> Option<ChiSquare> {
+    let freedom = measured.len().checked_sub(fitted)?;
     if measured.len() != expected.len() || !measured.iter().all(|m| m.sigma > 0.0) {
         return None;
     }

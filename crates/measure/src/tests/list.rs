@@ -107,3 +107,17 @@ fn tables_of_shots_are_known_by_their_titles() {
         assert!(!ShotList::is_begun_by(text), "{text:?}");
     }
 }
+
+#[test]
+fn columns_that_are_not_read_are_named_and_two_of_one_kind_refused() {
+    let list = ShotList::parse("file,date,Speed (m/s),operator\na.csv,today,0.5,me\n").unwrap();
+    let unmatched = list.unmatched(&[PathBuf::from("a.csv")], &[]);
+    assert!(unmatched[0].contains("not read: date, operator;"), "{unmatched:?}");
+    for titles in ["file,speed,v0", "file,speed,speed", "file,record,speed"] {
+        let list = ShotList::parse(&format!("{titles}\na,1,2\n"));
+        assert!(
+            matches!(list, Err(MeasureError::List(ref why)) if why.contains("both taken for")),
+            "{titles}: {list:?}"
+        );
+    }
+}

@@ -1,6 +1,5 @@
 //! The material that a film would be taken for by its incident time and wall peak.
 
-use super::shots::push_n;
 use super::{MODEL_ACCURACY, SPEEDS_M_S};
 use crate::claims::Evidence;
 use crate::reproduce::{Cases, OILS, ReproduceError, ReproduceProgress, failed, plan};
@@ -48,13 +47,12 @@ pub(super) fn effective(
     jobs.par_iter().map(one).collect()
 }
 
-/// A row whose wet contacts have a material that may be changed.
+/// A row without a push, as the paper's model, whose wet contacts have a material that may be changed.
 pub(super) struct WetRow<'a> {
     case: &'static str,
     speed_m_s: f64,
     experiment: &'a Experiment,
     steel: Material,
-    push_n: f64,
 }
 
 impl<'a> WetRow<'a> {
@@ -64,7 +62,7 @@ impl<'a> WetRow<'a> {
         speed_m_s: f64,
     ) -> Result<Self, ReproduceError> {
         let steel = cases.get("dry")?.chain(Some(1.0))?.0.beads[0].material;
-        Ok(Self { case, speed_m_s, experiment: cases.get(case)?, steel, push_n: push_n()? })
+        Ok(Self { case, speed_m_s, experiment: cases.get(case)?, steel })
     }
 
     /// The contact with these logarithms of K over K and of η.
@@ -90,7 +88,7 @@ impl<'a> WetRow<'a> {
         ];
         let named = numbers.map(|(key, value)| (format!("materials.{name}.{key}"), value));
         let named: Vec<(&str, f64)> = named.iter().map(|(key, v)| (key.as_str(), *v)).collect();
-        self.experiment.set(&named)?.with_push(self.push_n)
+        self.experiment.set(&named)
     }
 
     /// Logarithms of incident time and wall peak.

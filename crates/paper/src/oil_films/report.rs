@@ -11,7 +11,8 @@ const HEAD: &str = "# Films of the paper's oils\n\n\
     Steel balls on a film of oil that the growing contact traps, contacts 7 to 40, by the oils' own viscosity at 25 °C \
     and pressure–viscosity coefficient; nothing is fitted but where a factor is named. The constant of each class of \
     oils is an estimate. Ranges: 20 to 40 °C, least to largest coefficient, rounding of the printed viscosity and density. \
-    The last column is the paper's own model, whose effective materials were fitted to its measurements.\n";
+    Rows with films, and the dry row beside them, are pushed by 0.24 N. The last column is the paper's own model, in rows \
+    without a push, whose effective materials were fitted to its measurements.\n";
 
 impl OilFilms {
     /// Tables for people: ratios, claims, materials.
@@ -58,7 +59,8 @@ impl OilFilms {
     fn contacts(&self, page: &mut String) {
         page.push_str(
             "\n## The material that the film would be taken for\n\n\
-             Hertz's contact with a viscoelastic loss, of steel's Young modulus, that gives the film's time and wall peak.\n\n",
+             Hertz's contact with a viscoelastic loss, of steel's Young modulus, that gives the film's time and wall peak in a row \
+             without a push, as the paper fits it.\n\n",
         );
         let titles = ["K over dry", "paper", "ν", "paper", "η, Pa s", "paper"];
         *page += &table_head(["oil", "v0, m/s"].into_iter().chain(titles));

@@ -70,7 +70,7 @@ fn film(oil: usize) -> Result<Experiment, ReproduceError> {
 }
 
 /// Push on bead 1 in N of the rows with films, and of those beside them.
-pub(super) fn push_n() -> Result<f64, ReproduceError> {
+fn push_n() -> Result<f64, ReproduceError> {
     Ok(film(0)?.get("near_end.force")?)
 }
 

@@ -43,7 +43,7 @@ class MeasureOptions(TypedDict, total=False):
     whole: bool
     rows: Literal["shots", "channels", "times", "moments"] | None
     method: Literal["local", "onset", "correlation", "shape"]
-    onset: Quantity
+    onset: Quantity | None
     beads: Quantity | None
     sensor: Quantity | None
     polarity: Literal["positive", "negative"] | None

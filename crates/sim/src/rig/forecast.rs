@@ -3,7 +3,7 @@
 use crate::rig::{Case, Plan, RigError};
 use crate::{Batch, BatchOptions, Shard};
 use hertzchain_chain::observe::Passage;
-use hertzchain_experiment::{Campaign, Recorder, Trigger};
+use hertzchain_experiment::{Campaign, Experiment, Recorder, Trigger};
 
 /// Relative accuracy of the shots that are looked at: records are longer or shorter by much more.
 const ACCURACY: f64 = 1e-3;
@@ -29,17 +29,18 @@ const OVER: f64 = 1.5;
 const LATE: f64 = 3.0;
 
 /// What the recorder will miss of the model's own shots, chains in equilibrium, at the slowest and at
-/// the fastest speed of every case.
+/// the fastest speed of every case, as the actuator spreads them.
 ///
 /// # Errors
 /// A sampling rate that leaves no pulses: fewer than two samples across the half maximum of
 /// the narrowest.
 pub fn forecast(plan: &Plan) -> Result<Vec<String>, RigError> {
-    let mut warnings = Vec::new();
+    let mut warnings = Vec::from_iter(at_last_bead(&plan.experiment));
+    let Campaign { speeds_m_s, actuator, .. } = plan.experiment.campaign();
+    let off_m_s = LATE * actuator.spread_m_s;
+    let slowest = speeds_m_s.iter().copied().reduce(f64::min).map(|v| (v - off_m_s).max(0.5 * v));
+    let fastest = speeds_m_s.iter().copied().reduce(f64::max).map(|v| v + off_m_s);
     for case in &plan.cases {
-        let speeds_m_s = &plan.experiment.campaign().speeds_m_s;
-        let slowest = speeds_m_s.iter().copied().reduce(f64::min);
-        let fastest = speeds_m_s.iter().copied().reduce(f64::max);
         for (speed_m_s, passage) in passages(case, slowest.into_iter().chain(fastest).collect()) {
             let seen = SeenPulses {
                 what: format!("case `{}` at {speed_m_s:.4} m/s", case.name),
@@ -54,6 +55,18 @@ pub fn forecast(plan: &Plan) -> Result<Vec<String>, RigError> {
     }
     warnings.dedup();
     Ok(warnings)
+}
+
+/// Of a sensor bead that touches the wall, whose pulses lie on the wall's.
+fn at_last_bead(experiment: &Experiment) -> Option<String> {
+    let (bead, beads) = (experiment.sensor_bead(), experiment.beads());
+    (bead == beads).then(|| {
+        format!(
+            "sensor bead {bead} is the last: its pulses lie on the wall's, and no time between them can be \
+             measured; bead = {} or less in [sensors] leaves some",
+            beads.saturating_sub(3).max(1)
+        )
+    })
 }
 
 /// The model's own shots in which a pulse reaches the wall. What can't be computed, the
@@ -198,8 +211,7 @@ impl SeenPulses {
     /// From the gate to the touch, of a late striker.
     fn way_s(&self, campaign: &Campaign) -> f64 {
         let (gate, actuator) = (&campaign.photogate, &campaign.actuator);
-        let slow_m_s = self.speed_m_s - LATE * actuator.spread_m_s;
-        (gate.way_m + LATE * actuator.placing_m) / slow_m_s.max(0.5 * self.speed_m_s)
+        (gate.way_m + LATE * actuator.placing_m) / self.speed_m_s
     }
 }
 

@@ -14,6 +14,22 @@ use std::path::Path;
 
 const FIT: &str = "fit.json";
 
+/// Of some methods, or of data of one kind, only.
+const OPTIONAL: &[&str] = &[
+    "fit.csv",
+    "fit",
+    "comparison.csv",
+    "pulses.csv",
+    "pulses",
+    "profiles.csv",
+    "intervals.csv",
+    "profiles",
+    "posterior.csv",
+    "samples.csv",
+    "corner",
+    fit::CHAIN,
+];
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = match &arguments.data[..] {
         [one] if inference::is_table(one, arguments.recorded.describes_files())? => one,
@@ -39,7 +55,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn open_folder(arguments: &Arguments) -> Result<Option<Folder>, Failure> {
     let resumes = arguments.resume && arguments.method == Method::Posterior;
     let replace = arguments.force || resumes;
-    Folder::asked(arguments.out.as_deref(), &[FIT, fit::CHAIN], replace)
+    let folder = Folder::asked(arguments.out.as_deref(), &[FIT, fit::CHAIN], replace)?;
+    Ok(folder.map(|folder| folder.with_optional(OPTIONAL)))
 }
 
 /// DATA and further tables, each with its model.

@@ -33,7 +33,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.model.is_some() || arguments.preset.is_some(),
         arguments.dry_model.is_some() || arguments.dry_preset.is_some(),
     );
-    let folder = Folder::asked(arguments.out.as_deref(), &[FILE], arguments.force)?;
+    let folder = Folder::asked(arguments.out.as_deref(), &[FILE], arguments.force)?
+        .map(|folder| folder.with_optional(&["film.csv", "oils.csv", "failed.csv", "contacts"]));
     let chains = [&wet_model, &dry_model];
     let run_gauge =
         with_notes(arguments.threads, || gauge::gauge([wet, dry], chains, oils, arguments))?;

@@ -9,7 +9,7 @@ use crate::options::{
 };
 use crate::program::{Failure, Folder, failure, format, print};
 use crate::{design, inference, sweep};
-use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy};
+use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy, write_whole};
 use hertzchain_measure::{Case, Level, MeasureError, Shot, SpeedRow, shots_at_level};
 use serde_json::{Value, json};
 use std::fs;
@@ -127,6 +127,7 @@ impl Source {
         let folder = out.join("records");
         fs::create_dir_all(&folder)
             .map_err(|error| wrong(&format!("cannot write into {}: {error}", folder.display())))?;
+        same_format(&folder, &[rate.0.to_string(), arguments.channels.to_string()])?;
         let level =
             Level { volts: volts.0, samples: reading.shot_samples.map(|samples| samples.0) };
         let format = StreamFormat {
@@ -167,6 +168,24 @@ fn ended_well(recording: Option<JoinHandle<Result<(), MeasureError>>>) -> Result
     let ended = recording.join();
     let broken = |_| Failure::Ours("storing the shots of the stream was broken off".to_owned());
     ended.map_err(broken)?.map_err(|error| wrong(&error.to_string()))
+}
+
+/// Rate and channels of the stored shots, which their files do not state.
+const STREAM: &str = ".stream";
+
+/// Refuses a folder with shots of a stream of another rate or number of channels; notes those of a
+/// new one.
+fn same_format(folder: &Path, [rate, channels]: &[String; 2]) -> Result<(), Failure> {
+    let path = folder.join(STREAM);
+    let now = format!("--rate {rate} --channels {channels}");
+    match fs::read_to_string(&path) {
+        Ok(before) if stored(folder) > 0 && before != now => Err(wrong(&format!(
+            "{} has shots of a stream with {before}, not {now}; name another folder by --out",
+            folder.display()
+        ))),
+        _ => write_whole(&path, |out| out.write_all(now.as_bytes()))
+            .map_err(|error| wrong(&format!("cannot write {}: {error}", path.display()))),
+    }
 }
 
 /// Largest number of a stored shot; 0 for none.

@@ -20,7 +20,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     failure::print_improbable(&rig);
     let options = Options { most_flagged, ..measure::options(arguments, rig.as_ref())? };
     let replace = arguments.force;
-    let folder = Folder::asked(arguments.out.as_deref(), &[MEASURED, SHOTS], replace)?;
+    let folder = Folder::asked(arguments.out.as_deref(), &[MEASURED, SHOTS], replace)?
+        .map(|folder| folder.with_optional(OPTIONAL));
     let report = arguments.report.as_deref();
     report.map_or(Ok(()), |path| require_free(path, "--report", replace))?;
     let counter = Counter::new("records", 0);
@@ -46,6 +47,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub(super) const MEASURED: &str = "measured.json";
 
 const SHOTS: &str = "shots.csv";
+
+/// Of records with times, speeds or a reference only.
+const OPTIONAL: &[&str] =
+    &["speeds.csv", "power-laws.csv", "ratios.csv", "signals", "times-of-flight", "ratios"];
 
 /// Most lines about the table of shots, which may be of other recordings.
 const MOST_LINES: usize = 20;

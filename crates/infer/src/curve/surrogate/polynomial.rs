@@ -101,8 +101,8 @@ impl Study {
         polynomial: &Polynomial,
         most: f64,
     ) -> Vec<usize> {
-        let fit_result = self.points.iter().zip(&self.curves);
-        let all: Vec<_> = self.trials().chain(fit_result).collect();
+        let solved = self.points.iter().zip(&self.curves);
+        let all: Vec<_> = self.trials().chain(solved).collect();
         let differences = |(point, exact): &(&Vec<f64>, &Vec<Predicted>)| {
             let own = polynomial.curve(point);
             own.map(|own| problem.differences(&own, exact))

@@ -113,23 +113,6 @@ impl Default for PulseLimits {
     }
 }
 
-impl PulseLimits {
-    /// Limits for contacts whose force grows as overlap^`exponent`, 3/2 for Hertz: the default
-    /// width, scaled as that of the solitary wave in the long-wave limit, whose force is
-    /// cos^(2n/(n−1))((n−1) √(6/(n(n+1))) x) at x beads from its maximum \[Nesterenko1983\].
-    pub fn for_exponent(exponent: f64) -> Self {
-        let half_width = |n: f64| {
-            let angle = 0.5_f64.powf((n - 1.0) / (2.0 * n)).acos();
-            angle / ((n - 1.0) * (6.0 / (n * (n + 1.0))).sqrt())
-        };
-        let default = Self::default();
-        Self {
-            width_beads: default.width_beads * (half_width(exponent) / half_width(1.5)),
-            ..default
-        }
-    }
-}
-
 /// What is known of a record before its pulses are searched for; nothing need be.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FindOptions {

@@ -130,7 +130,7 @@ pub struct Picks {
     pub reflected: Option<Picked>,
     /// Other maxima of the three, in this order, that are nearly as high.
     pub competing: [Option<CompetingPick>; 3],
-    /// SensorCalibration that times and ratios contain.
+    /// Calibration that times and ratios contain.
     pub calibration: SensorCalibration,
 }
 

@@ -32,6 +32,9 @@ const MOST_LIKELY: f64 = 0.5;
 const BEFORE: f64 = 0.3;
 /// Largest force of the wall, over a reflected pulse, that comes back before it.
 const RISEN: f64 = 0.015;
+/// Height of a reflected pulse over the wall's, from like sensors, for the least of which the wall's force
+/// counts: that of a more sensitive sensor is larger.
+const RETURNED: f64 = 0.25;
 
 /// What is under a pulse at its maximum over what is known of it.
 struct Under {
@@ -73,7 +76,7 @@ impl ChannelView<'_> {
                 (least, last, UNDER_WALL)
             }
         };
-        let known = [last, self.opened, pulse.height];
+        let known = [last, self.opened, self.height_from_like_sensors(pulse)];
         let sigmas = known.iter().zip(deviation).map(|(known, share)| known * share);
         Estimate {
             value: likely[0] * least + likely[1] * self.opened,
@@ -123,14 +126,21 @@ impl ChannelView<'_> {
             return 0.0;
         };
         let (fall, closeness) = self.fall_after(pulse, time);
-        let between = fall.risen * closeness * pulse.height;
+        let height = self.height_from_like_sensors(pulse);
+        let between = fall.risen * closeness * height;
         let back = self.wall.map_or(0.0, |wall| {
             let means = self.means_before(foot, length);
             let least = self.least_mean(wall as f64, foot, pulse.steep_width_samples());
-            let risen = (means[2] - least.max(0.0)).clamp(0.0, RISEN * pulse.height.abs());
+            let risen = (means[2] - least.max(0.0)).clamp(0.0, RISEN * height);
             BEFORE * left_of(means, (time - foot) / length) * risen
         });
         back.hypot(between) / (time - foot)
+    }
+
+    /// A pulse's height, or what a reflected one's would be if both sensors were as sensitive as the wall's.
+    fn height_from_like_sensors(&self, pulse: &Pulse) -> f64 {
+        let wall = self.wall.and_then(|wall| self.height(wall)).unwrap_or(0.0);
+        pulse.height.abs().max(RETURNED * wall.abs())
     }
 
     /// Where a pulse has not begun in a channel that sums both sensors, and the length of stretches
