@@ -3,7 +3,7 @@
 use crate::csv::{Table, columns, list, table, view};
 use crate::failure::Failure;
 use crate::inference::{self, is_meant, references_json, user, warnings_json};
-use crate::options::DesignOptions as Arguments;
+use crate::options::{DesignOptions as Arguments, Positive};
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
     Aim, Candidate, Choices, CurveProblem, Data, Design, Expected, ExpectedErrors, Fit, Fitting,
@@ -132,7 +132,14 @@ pub(crate) fn run_design(
     let fit = fit(problem, &Fitting::default()).map_err(user)?;
     let problem = &sized_by(problem.clone(), &fit, arguments)?;
     let ways = ways(&problem.model().experiment, &choices(arguments)).map_err(user)?;
-    let errors = ExpectedErrors::like(problem.data());
+    let mut errors = ExpectedErrors::like(problem.data());
+    if let Some(Positive(error)) = arguments.measured.ratio_error {
+        for (of, expected) in Observable::ALL.into_iter().zip(&mut errors.values) {
+            if !of.is_time() && !problem.data().has(of) {
+                *expected = error;
+            }
+        }
+    }
     let candidates = problem.candidates(&fit, &ways, speeds, &errors).map_err(user)?;
     let picks = arguments.picks.0;
     let found = hertzchain_infer::design(problem.parameters(), &fit, &candidates, targets, picks)

@@ -54,7 +54,9 @@ fn open_file(file: &Path) -> Result<Experiment, Failure> {
     Experiment::open(file).map_err(|error| match error {
         OpenError::Mistakes(mistakes) => mistakes.into(),
         OpenError::Unreadable { .. } => {
-            let meant = file.to_str().filter(|name| !file.exists() && preset(name).is_ok());
+            let meant = file
+                .to_str()
+                .filter(|name| (file.is_dir() || !file.exists()) && preset(name).is_ok());
             let hint =
                 meant.map_or(String::new(), |name| format!("; did you mean --preset {name}?"));
             Failure::User(format!("{error}{hint}"))

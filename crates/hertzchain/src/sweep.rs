@@ -1,7 +1,7 @@
 //! Many shots of an experiment: batches over speeds and named numbers, and their results.
 
 use crate::failure::Failure;
-use crate::options::{SweepOptions, Threads, check_speeds};
+use crate::options::{ErrorControl, SweepOptions, Threads, check_speeds};
 use crate::shot::{Energy, ShotView};
 use crate::{input, missing};
 use hertzchain_experiment::{Experiment, Units};
@@ -51,6 +51,11 @@ pub fn batch(
 /// A plan at the experiment's own speed, to reject options before any work.
 fn plan(experiment: &Experiment, options: &SweepOptions) -> Result<Plan, Failure> {
     let how = &options.how;
+    if how.check && options.error_control == ErrorControl::None {
+        return Err(Failure::User(
+            "--check has nothing to compare with --error-control none; leave one out".to_owned(),
+        ));
+    }
     experiment.needs_striker("a sweep over speeds needs a chain with a striker")?;
     input::check_times(how, experiment)?;
     let (mut plan, _warnings) = Plan::from_experiment(experiment, None)?;

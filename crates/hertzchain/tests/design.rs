@@ -60,3 +60,36 @@ fn a_ranking_by_a_model_that_the_data_do_not_follow_is_told_to_be_worth_no_more(
     assert!(text.starts_with("warning: the model does not follow the data"), "{text}");
     assert_eq!(found["follows_data"], false);
 }
+
+#[test]
+fn the_unit_of_costs_changes_no_ranking() {
+    let folder = folder("design-costs");
+    let data = curve(&folder, "dry");
+    let ranked = |cost: &str| {
+        let costs = ["incident", "reflected", "ratio", "sensor", "preload"];
+        let costs = costs.map(|of| format!("{of}={cost}")).join(",");
+        let design = ["design", &data, "-p", "dry", "--free", "eta,B", "--target", "B", "--json"];
+        let found = json(&with_errors(&[&design[..], &["--costs", &costs]].concat()));
+        let names = found["ranked"].as_array().unwrap().iter().map(|one| one["name"].clone());
+        names.collect::<Vec<_>>()
+    };
+    let plain = ranked("1");
+    for cost in ["600", "0.001"] {
+        assert_eq!(ranked(cost), plain, "{cost}");
+    }
+}
+
+#[test]
+fn an_error_of_ratios_holds_for_ratios_that_the_table_does_not_have() {
+    let folder = folder("design-ratios");
+    let data = curve(&folder, "dry");
+    let error = |ratio: &str| {
+        let design = ["design", &data, "-p", "dry", "--free", "eta,B", "--speeds", "1"];
+        let design = [&design[..], &["--target", "B", "--ratio-error", ratio, "--json"]].concat();
+        let found = json(&with_errors(&design));
+        let ranked = found["ranked"].as_array().unwrap();
+        let ratio = ranked.iter().find(|one| one["name"].as_str().unwrap().contains("ratio"));
+        ratio.unwrap()["standard_errors"][0].as_f64().unwrap()
+    };
+    assert!(error("1e-4") < 0.5 * error("5e-3"));
+}

@@ -191,3 +191,19 @@ fn pushes_sensors_and_costs_of_a_design_are_options() {
         assert!(message.contains(words), "{message}");
     }
 }
+
+#[test]
+fn a_short_name_is_set_in_other_models_too() {
+    let folder = folder("set-short");
+    let data = curve(&folder, "dry");
+    let fit = ["fit", &data, "-p", "dry", "--free", "B", "--set", "eta=30 kPa s"];
+    let found = json(&with_errors(&[&fit[..], &["--against", "dry=dry.B", "--json"]].concat()));
+    let [own, same] = [0, 1].map(|at| &found["comparison"]["models"][at]);
+    assert_eq!(same["settings_left_out"], Value::Array(Vec::new()));
+    let [own, same] = [own, same].map(|one| one["chi_square"].as_f64().unwrap());
+    // Curves to 1e-6 and 1e-7.
+    assert!((own / same - 1.0).abs() < 1e-2, "{own} {same}");
+    let twice = ["--prior", "B=70+-1", "--prior", "B=80+-1"];
+    let reported = refused(&with_errors(&[&fit[..], &twice].concat()));
+    assert!(reported.contains("--prior B is given twice"), "{reported}");
+}

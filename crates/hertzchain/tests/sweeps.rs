@@ -114,3 +114,27 @@ fn a_calibrated_sweep_says_so() {
     assert!(swept["calibration"].is_null());
     assert_eq!(swept["error_control"], "per shot: as asked");
 }
+
+#[test]
+fn a_return_that_was_not_waited_for_is_none() {
+    let reflected = |duration: &str| {
+        let all = ["-p", "dry", "--speeds", "0.5,1", "--duration", duration];
+        let output = sweep(&all);
+        assert!(text(&output.stderr).contains("2 of 2 shots end before"), "{output:?}");
+        let swept: Value =
+            serde_json::from_slice(&sweep(&[&all[..], &["--json"]].concat()).stdout).unwrap();
+        swept["points"][0]["tof_reflected_s"].clone()
+    };
+    // The wall's peak is at 0.925 ms; rattling of the sensor bead has maxima from 1.1 ms on.
+    assert!(reflected("1.2ms").is_null());
+    let known = reflected("2.2ms").as_f64().unwrap();
+    assert!((known - 797.884e-6).abs() < 1e-8, "{known}");
+}
+
+#[test]
+fn a_speed_that_is_given_twice_is_one_point_of_a_power_law() {
+    let printed = text(&sweep(&["-p", "hertz", "--speeds", "0.5,1,0.5"]).stdout);
+    assert!(printed.contains("two speeds, which determine no errors"), "{printed}");
+    let reported = sweep(&["-p", "hertz", "--speeds", "1", "--check", "--error-control", "none"]);
+    assert!(text(&reported.stderr).contains("nothing to compare with"), "{reported:?}");
+}

@@ -174,10 +174,13 @@ fn ranked(
     (ranked, greedy)
 }
 
-/// By gain over cost; of two that differ by no difference the cheaper, then that with fewer
-/// numbers, then the first.
+/// By gain over cost; of two that differ by no difference, whatever the unit of costs, the cheaper, then
+/// that with fewer numbers, then the first.
 fn before(candidates: &[Candidate], a: &Expected, b: &Expected) -> Ordering {
-    let gain = |one: &Expected| (one.gain_per_cost / NO_DIFFERENCE).round();
+    let gain = |one: &Expected| match one.gain < NO_DIFFERENCE {
+        true => f64::NEG_INFINITY,
+        false => (one.gain_per_cost.ln() / NO_DIFFERENCE).round(),
+    };
     let [one, other] = [a, b].map(|one| &candidates[one.candidate]);
     let gains = gain(b).total_cmp(&gain(a));
     let costs = gains.then(one.cost.total_cmp(&other.cost));

@@ -381,7 +381,10 @@ fn shot(plan: &Plan, (system, end): (&System, End), lane: LaneResult) -> Option<
     let passage = passages.passage().ok()?;
     // Where what came last changes what came first, looks between steps are too coarse.
     let unfinished = match (end, plan.duration_s) {
-        (End::Duration, Some(duration_s)) => lane.time_s < duration_s,
+        // The wave loop notes what a shorter duration leaves open.
+        (End::Duration, Some(duration_s)) => {
+            lane.time_s < duration_s || duration_s < passage.search_ends_s
+        }
         (End::Reflected, _) => lane.time_s < passage.search_ends_s,
         _ => false,
     };

@@ -4,6 +4,7 @@ use crate::batch::BatchShot;
 use crate::shot::Shot;
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty, power_law, uncertainty};
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 
 /// Columns of a sweep's table; the ends of their names are the units.
 pub const COLUMNS: [&str; 12] = [
@@ -160,7 +161,12 @@ impl Rows {
         let rows = times.zip(self.column(Column::Speed)).zip(self.column(Column::Accuracy));
         let seen = rows.filter(|((time_s, _), _)| !time_s.is_nan());
         let mut seen_at: [Vec<f64>; 3] = Default::default();
+        let mut known = HashSet::new();
         for ((time_s, speed_m_s), reached) in seen {
+            // The same shot again says nothing more.
+            if !known.insert(speed_m_s.to_bits()) {
+                continue;
+            }
             let accuracy = if reached.is_nan() { asked } else { *reached };
             let row = [*speed_m_s, *time_s, accuracy];
             seen_at.iter_mut().zip(row).for_each(|(column, cell)| column.push(cell));

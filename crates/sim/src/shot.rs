@@ -96,6 +96,10 @@ pub(crate) struct Conditioning {
     pub interpolation: f64,
 }
 
+/// Times of flight after the wall's peak from which on a shot of a given duration may have a return: no
+/// pulse comes back faster than it went, and the sensor bead rattles before.
+const WAITED: f64 = 1.5;
+
 impl Shot {
     /// The pulses as a plan picks them, from what its sensors showed.
     pub(crate) fn picked(
@@ -105,6 +109,13 @@ impl Shot {
         duration_s: f64,
         solver: &str,
     ) -> Self {
+        let passage = passage.map(|mut passage| {
+            let way_s = passage.tof_incident_s();
+            if plan.duration_s.is_some() && duration_s < passage.wall.time_s + WAITED * way_s {
+                passage.forget_return();
+            }
+            passage
+        });
         let passed = passage.as_ref().ok();
         let picked = |pick| Flight::picked(pick, seen, passed?);
         let between = (plan.chain.beads.len() - plan.sensor_bead) as f64 + 0.5;

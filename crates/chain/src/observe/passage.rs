@@ -141,6 +141,13 @@ const FORERUNS: f64 = 0.1;
 const ECHO: f64 = 2.0;
 
 impl Passage {
+    /// Drops the reflected pulse, of a shot that did not wait for it.
+    pub fn forget_return(&mut self) {
+        self.reflected = None;
+        self.reflected_width_s = None;
+        self.competing.retain(|other| other.pulse != Pulse::Reflected);
+    }
+
     /// Incident time of flight in s.
     pub fn tof_incident_s(&self) -> f64 {
         self.wall.time_s - self.incident.time_s

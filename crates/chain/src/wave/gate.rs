@@ -288,7 +288,8 @@ impl GateWatch {
     }
 }
 
-/// Where in a step a change happens, on the dense output, to the resolution at which the redone step decides anyway.
+/// Where in a step a change happens: bisection with secant steps on the
+/// dense output, to the resolution at which the redone step decides anyway.
 fn locate(piece: &Piece<'_>, contact: usize, change: Change) -> f64 {
     // Negative before the change, positive after it.
     let signed = |theta: f64| {
@@ -310,7 +311,7 @@ fn locate(piece: &Piece<'_>, contact: usize, change: Change) -> f64 {
 }
 
 /// A root of a function that is negative at `low` and not at `high`
-/// (the Illinois variant of false position).
+/// (false position that halves the value at the end that stays, so that the other end moves, too).
 pub(crate) fn bracketed_root(
     f: impl Fn(f64) -> f64,
     mut low: f64,
@@ -318,8 +319,6 @@ pub(crate) fn bracketed_root(
     width: f64,
 ) -> f64 {
     let (mut f_low, mut f_high) = (f(low), f(high));
-    // Whether the last step has moved the lower end; only an end that stays twice is weighed down.
-    let mut moved_low = None;
     for _ in 0..200 {
         if high - low <= width || f_high <= 0.0 {
             break;
@@ -328,14 +327,13 @@ pub(crate) fn bracketed_root(
         let inside = guess > low && guess < high;
         let middle = if inside { guess } else { 0.5 * (low + high) };
         let value = f(middle);
-        let moves_low = value < 0.0;
-        let weight = if moved_low == Some(moves_low) { 0.5 } else { 1.0 };
-        if moves_low {
-            (low, f_low, f_high) = (middle, value, weight * f_high);
+        if value < 0.0 {
+            (low, f_low) = (middle, value);
+            f_high *= 0.5;
         } else {
-            (high, f_high, f_low) = (middle, value, weight * f_low);
+            (high, f_high) = (middle, value);
+            f_low *= 0.5;
         }
-        moved_low = Some(moves_low);
     }
     high
 }

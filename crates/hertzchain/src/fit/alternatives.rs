@@ -8,8 +8,8 @@ use crate::options::{
 };
 use hertzchain_experiment::{Experiment, PathError};
 use hertzchain_infer::{
-    Compared, Comparison, CrossValidation, CurveProblem, Fit, Folding, Problem, compare,
-    cross_validate, same_number,
+    Compared, Comparison, CrossValidation, CurveProblem, Fit, Folding, FreeNumber, Problem,
+    compare, cross_validate, same_number,
 };
 
 /// A model that was fitted to the same data.
@@ -139,9 +139,10 @@ fn set_where_known(
 ) -> Result<(Experiment, Vec<String>), Failure> {
     let mut without = Vec::new();
     for set in sets {
-        match experiment.place(&set.name) {
-            Err(PathError::Unknown { .. }) => without.push(set.to_string()),
-            _ => experiment = inference::changed(experiment, std::slice::from_ref(set))?,
+        let is_unknown = matches!(experiment.place(&set.name), Err(PathError::Unknown { .. }));
+        match is_unknown && FreeNumber::find(&experiment, &set.name, Some(1.0)).is_err() {
+            true => without.push(set.to_string()),
+            false => experiment = inference::changed(experiment, std::slice::from_ref(set))?,
         }
     }
     Ok((experiment, without))

@@ -112,7 +112,15 @@ pub fn all_oils(file: Option<&Path>) -> Result<Vec<Oil>, Failure> {
     if let Some(file) = file {
         let unread = |error| Failure::User(format!("--oils {}: {error}", file.display()));
         let text = text(file).map_err(unread)?;
-        all.extend(oils(&file.display().to_string(), &text).map_err(user)?);
+        let own = oils(&file.display().to_string(), &text).map_err(user)?;
+        if let Some(known) = own.iter().find(|oil| all.iter().any(|known| known.name == oil.name)) {
+            let name = &known.name;
+            return Err(Failure::User(format!(
+                "--oils {}: {name} is an oil that the program knows; give yours another name",
+                file.display()
+            )));
+        }
+        all.extend(own);
     }
     Ok(all)
 }

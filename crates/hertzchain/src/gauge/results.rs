@@ -12,14 +12,16 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
     let gauge = &run_gauge.gauge;
     let names = gauge.dry.parameters().iter().enumerate();
     let verdict = &run_gauge.verdict;
+    let models = [&gauge.wet.experiment, &gauge.dry.model().experiment];
     let mut all = json!({
+        "models": models.map(|model| model.name()),
         "dry": names.map(|(at, parameter)| json!({
             "name": parameter.name, "unit": parameter.unit,
             "value": gauge.dry_fit.point[at], "standard_error": gauge.dry_covariance.sd[at],
         })).collect::<Value>(),
         "dry_chi_square": gauge.dry_fit.chi_square(),
         "references": references_json(&gauge.wet),
-        "warnings": warnings_json([&gauge.wet.experiment, &gauge.dry.model().experiment]),
+        "warnings": warnings_json(models),
         "contacts": run_gauge.rows.iter().map(|of| row(of, run_gauge)).collect::<Value>(),
         "film": run_gauge.film.as_ref().map(film),
         "to_add": gauge.to_add(),

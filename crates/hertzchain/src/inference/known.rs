@@ -46,7 +46,10 @@ fn each(
     mut put: impl FnMut(&mut Parameter, &str) -> Result<(), String>,
 ) -> Result<(), Failure> {
     let known: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
-    for Assignment { name, text } in given {
+    for (at, Assignment { name, text }) in given.iter().enumerate() {
+        if given[..at].iter().any(|other| other.name == *name) {
+            return Err(Failure::User(format!("{option} {name} is given twice; leave one out")));
+        }
         let meant = |p: &&mut Parameter| is_meant(name, &p.name);
         let mut found = parameters.iter_mut().filter(meant).peekable();
         if found.peek().is_none() {

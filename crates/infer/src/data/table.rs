@@ -411,7 +411,7 @@ impl Reader<'_> {
     ) -> Result<Option<Estimate>, InferError> {
         let line = record.line;
         let Some(value) = self.number(record, Some(columns.value))? else {
-            return Ok(None);
+            return self.plain_alone(record, of, columns.value).map(|()| None);
         };
         self.check(wrong_value(of, value), line, columns.value)?;
         let known = self.number(record, columns.sigma)?;
@@ -432,6 +432,21 @@ impl Reader<'_> {
         let estimate = Estimate { value, sigma };
         self.check(wrong_sigma(of, estimate), line, place)?;
         Ok(Some(estimate))
+    }
+
+    /// Refuses a row whose plain mean would be passed over, as the time at the mean speed is missing.
+    fn plain_alone(&self, record: &Record, of: Observable, read: usize) -> Result<(), InferError> {
+        let plain = find(self.titles, &[of.column()]).filter(|plain| *plain != read);
+        match self.number(record, plain)? {
+            None => Ok(()),
+            Some(_) => {
+                let what = format!(
+                    "no number, though `{}` has one: fill the cell, or leave this column out",
+                    of.column()
+                );
+                self.wrong(record.line, read, &what)
+            }
+        }
     }
 
     /// Degrees of freedom of the scatter from which a standard error comes; infinite if it is known,

@@ -11,7 +11,9 @@ use crate::{csv, input, missing, table};
 use hertzchain_experiment::{Experiment, Units};
 use hertzchain_measure::signal::{FitError, PowerLaw, Uncertainty};
 use hertzchain_paper::reproduce::ReproduceProgress;
-use hertzchain_sim::{Batch, BatchResult, BatchShot, COLUMNS, Column, Rows, Shard, StudyError};
+use hertzchain_sim::{
+    Batch, BatchResult, BatchShot, COLUMNS, Column, Rows, Shard, Shot, StudyError,
+};
 use serde_json::json;
 use std::collections::HashSet;
 use std::path::Path;
@@ -37,6 +39,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     show(arguments, &experiment, &swept)?;
     folder.map_or(Ok(()), |folder| write(folder, &swept.result))?;
     report_failed(&swept, experiment.units())
+}
+
+/// Shots whose duration ends before the search for their pulses.
+fn short(swept: &SweepResult) -> Option<String> {
+    let shots = swept.points.iter().filter_map(|point| point.shot.as_ref().ok());
+    let is_short = |shot: &&Shot| {
+        let searched = shot.passage.as_ref().map(|passage| passage.search_ends_s);
+        swept.plan.duration_s.is_some() && searched.is_ok_and(|until_s| shot.duration_s < until_s)
+    };
+    let count = shots.filter(is_short).count();
+    (count > 0).then(|| {
+        format!(
+            "{count} of {} shots end before the search for their pulses is over; a longer `duration` goes on",
+            swept.points.len()
+        )
+    })
 }
 
 /// Every speed failed: the sweep did.
@@ -70,6 +88,7 @@ fn show(
         print::print(assumed)?;
     }
     print_warnings(experiment, swept);
+    print::warn(short(swept));
     let part = &swept.result;
     if part.rows.flights().is_empty() && !nothing(part) {
         return print::print(&(rows(part) + &no_flight(swept)));

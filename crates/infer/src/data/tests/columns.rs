@@ -69,3 +69,12 @@ fn the_correlation_is_that_of_the_times_that_are_read() {
     let plain = "speed_m_s,tof_incident_s,tof_at_mean_speed_correlation";
     assert_eq!((read(plain), read(&format!("{plain},tof_correlation"))), (None, Some(3)));
 }
+
+#[test]
+fn a_row_is_not_passed_over_for_a_time_at_the_mean_speed_that_is_missing() {
+    let text = "speed_m_s,tof_incident_s,tof_incident_at_mean_speed_s\n0.5,1e-3,1e-3\n1,9e-4,\n";
+    let selection = Selection { time_error_s: Some(1e-7), ..Selection::default() };
+    let reported = crate::Data::parse("a.csv", text, &selection).unwrap_err().to_string();
+    assert!(reported.contains("line 3, tof_incident_at_mean_speed_s: no number"), "{reported}");
+    assert!(reported.contains("`tof_incident_s` has one"), "{reported}");
+}
