@@ -223,7 +223,7 @@ fn a_record_too_short_is_warned_of_and_a_rate_without_pulses_refused() {
     let short = scratch.run("short", &[]);
     assert!(short.status.success());
     let reported = String::from_utf8_lossy(&short.stderr);
-    assert!(reported.contains("warning: case `dry` at 0.1000 m/s: the record ends"), "{reported}");
+    assert!(reported.contains("warning: case `dry` at 0.0910 m/s: the record ends"), "{reported}");
     with("sampling = \"500 kHz\"", "sampling = \"1 kHz\"");
     let slow = scratch.run("slow", &[]);
     assert_eq!(slow.status.code(), Some(2));

@@ -70,7 +70,7 @@ fn the_unit_of_costs_changes_no_ranking() {
         let costs = costs.map(|of| format!("{of}={cost}")).join(",");
         let design = ["design", &data, "-p", "dry", "--free", "eta,B", "--target", "B", "--json"];
         let found = json(&with_errors(&[&design[..], &["--costs", &costs]].concat()));
-        let names = found["ranked"].as_array().unwrap().iter().map(|one| one["name"].clone());
+        let names = found["ranked"].as_array().unwrap().iter().map(|one| one["measure"].clone());
         names.collect::<Vec<_>>()
     };
     let plain = ranked("1");
@@ -88,7 +88,7 @@ fn an_error_of_ratios_holds_for_ratios_that_the_table_does_not_have() {
         let design = [&design[..], &["--target", "B", "--ratio-error", ratio, "--json"]].concat();
         let found = json(&with_errors(&design));
         let ranked = found["ranked"].as_array().unwrap();
-        let ratio = ranked.iter().find(|one| one["name"].as_str().unwrap().contains("ratio"));
+        let ratio = ranked.iter().find(|one| one["measure"].as_str().unwrap().contains("ratio"));
         ratio.unwrap()["standard_errors"][0].as_f64().unwrap()
     };
     assert!(error("1e-4") < 0.5 * error("5e-3"));

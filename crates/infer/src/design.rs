@@ -161,11 +161,13 @@ fn ranked(
 ) -> (Vec<Expected>, Vec<Expected>) {
     let expected = |sum: &Information<'_>, i: usize| sum.expected(&candidates[i], i);
     let mut ranked: Vec<Expected> = (0..candidates.len()).map(|i| expected(now, i)).collect();
-    ranked.sort_by(|a, b| before(candidates, a, b));
+    let least_cost = candidates.iter().map(|one| one.cost).fold(f64::INFINITY, f64::min);
+    let before = |a: &Expected, b: &Expected| before(candidates, least_cost, a, b);
+    ranked.sort_by(before);
     let (mut greedy, mut sum) = (Vec::new(), now.clone());
     for _ in 0..picks {
         let all = (0..candidates.len()).map(|i| expected(&sum, i));
-        let Some(best) = all.min_by(|a, b| before(candidates, a, b)) else {
+        let Some(best) = all.min_by(before) else {
             break;
         };
         sum = sum.with(&candidates[best.candidate].rows);
@@ -174,12 +176,12 @@ fn ranked(
     (ranked, greedy)
 }
 
-/// By gain over cost; of two that differ by no difference, whatever the unit of costs, the cheaper, then
+/// By gain over cost in units of the least cost; of two that differ by no difference the cheaper, then
 /// that with fewer numbers, then the first.
-fn before(candidates: &[Candidate], a: &Expected, b: &Expected) -> Ordering {
+fn before(candidates: &[Candidate], least_cost: f64, a: &Expected, b: &Expected) -> Ordering {
     let gain = |one: &Expected| match one.gain < NO_DIFFERENCE {
         true => f64::NEG_INFINITY,
-        false => (one.gain_per_cost.ln() / NO_DIFFERENCE).round(),
+        false => ((one.gain_per_cost * least_cost).ln() / NO_DIFFERENCE).round(),
     };
     let [one, other] = [a, b].map(|one| &candidates[one.candidate]);
     let gains = gain(b).total_cmp(&gain(a));

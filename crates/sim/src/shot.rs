@@ -112,7 +112,7 @@ impl Shot {
         let passage = passage.map(|mut passage| {
             let way_s = passage.tof_incident_s();
             if plan.duration_s.is_some() && duration_s < passage.wall.time_s + WAITED * way_s {
-                passage.forget_return();
+                passage.drop_return();
             }
             passage
         });

@@ -142,7 +142,7 @@ const ECHO: f64 = 2.0;
 
 impl Passage {
     /// Drops the reflected pulse, of a shot that did not wait for it.
-    pub fn forget_return(&mut self) {
+    pub fn drop_return(&mut self) {
         self.reflected = None;
         self.reflected_width_s = None;
         self.competing.retain(|other| other.pulse != Pulse::Reflected);

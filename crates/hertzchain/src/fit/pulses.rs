@@ -191,9 +191,9 @@ impl Pulsed {
         let mut numbers = model.numbers.iter();
         let free = numbers.find(|number| number.path() == Some(LOW_PASS));
         let parameters = self.inferred.parameters.iter();
-        let mut fit_result = parameters.zip(&self.inferred.fit.point);
-        let fit_result = free.and_then(|free| fit_result.find(|(p, _)| p.name == free.name()));
-        if let Some((_, corner_hz)) = fit_result {
+        let mut corner = parameters.zip(&self.inferred.fit.point);
+        let corner = free.and_then(|free| corner.find(|(p, _)| p.name == free.name()));
+        if let Some((_, corner_hz)) = corner {
             amplifier.low_pass_hz = *corner_hz;
         }
         amplifier.filters()
@@ -204,18 +204,18 @@ impl Pulsed {
 const LOW_PASS: &str = "campaign.amplifier.low_pass";
 
 /// Everything, to be read by programs and to be repeated.
-pub fn json(fit_result: &Pulsed, arguments: &Arguments) -> Value {
-    let records = fit_result.problem.records.iter();
+pub fn json(pulsed: &Pulsed, arguments: &Arguments) -> Value {
+    let records = pulsed.problem.records.iter();
     let own = json!({
-        "model": fit_result.problem.model.experiment.name(),
-        "kept": inference::unit_changes(&fit_result.problem.model, &arguments.modelled.set),
-        "held_loads": inference::held_loads(&fit_result.problem.model),
-        "references": inference::references_json(&fit_result.problem.model),
-        "warnings": inference::warnings_json([&fit_result.problem.model.experiment]),
-        "filters": fit_result.filters(),
-        "unasked": fit_result.unasked(arguments),
-        "residuals": fit_result.problem.residual_count(),
-        "fitted_to_single_records": fit_result.problem.nuisance_count(),
+        "model": pulsed.problem.model.experiment.name(),
+        "kept": inference::unit_changes(&pulsed.problem.model, &arguments.modelled.set),
+        "held_loads": inference::held_loads(&pulsed.problem.model),
+        "references": inference::references_json(&pulsed.problem.model),
+        "warnings": inference::warnings_json([&pulsed.problem.model.experiment]),
+        "filters": pulsed.filters(),
+        "unasked": pulsed.unasked(arguments),
+        "residuals": pulsed.problem.residual_count(),
+        "fitted_to_single_records": pulsed.problem.nuisance_count(),
         "records": records.map(|record| json!({
             "source": record.source,
             "speed_m_s": record.speed_m_s.value,
@@ -223,9 +223,9 @@ pub fn json(fit_result: &Pulsed, arguments: &Arguments) -> Value {
             "samples_in_a_mean": record.width,
             "error_of_means_v": record.sigma_v,
         })).collect::<Value>(),
-        "left_out": fit_result.refused,
+        "left_out": pulsed.refused,
     });
-    joined(own, inferred(&fit_result.inferred, arguments))
+    joined(own, inferred(&pulsed.inferred, arguments))
 }
 
 /// A record's channel as it was measured and as the fit has it.
@@ -242,12 +242,12 @@ pub struct Shown<'a> {
 ///
 /// # Errors
 /// What is in the way of a shot.
-pub fn shown(fit_result: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
-    let records = fit_result.problem.records.iter().enumerate();
+pub fn shown(pulsed: &Pulsed) -> Result<Vec<Shown<'_>>, Failure> {
+    let records = pulsed.problem.records.iter().enumerate();
     let all = records.flat_map(|(at, record)| {
         (0..record.means_v.len()).map(move |channel| {
-            let point = &fit_result.inferred.fit.point;
-            let columns = fit_result.problem.picture(point, at, channel).map_err(user)?;
+            let point = &pulsed.inferred.fit.point;
+            let columns = pulsed.problem.picture(point, at, channel).map_err(user)?;
             Ok(Shown { record, channel, columns })
         })
     });
@@ -262,8 +262,8 @@ pub(crate) fn pulses_csv(shown: &[Shown<'_>]) -> String {
 /// Every mean of samples beside the fitted one.
 pub fn rows_json(shown: &[Shown<'_>]) -> Value {
     let rows = shown.iter().flat_map(|shown| {
-        let [times, measured, fit_result] = &shown.columns;
-        let means = times.iter().zip(measured).zip(fit_result);
+        let [times, measured, fitted] = &shown.columns;
+        let means = times.iter().zip(measured).zip(fitted);
         means.map(|((time_s, measured_v), fitted_v)| {
             json!({
                 "source": shown.record.source,

@@ -88,9 +88,9 @@ pub fn joined(mut one: Value, other: Value) -> Value {
 }
 
 /// What any fit determines.
-pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
-    let (fit, goodness) = (&fit_result.fit, &fit_result.goodness);
-    let correlation = |i: usize, j: usize| fit_result.covariance.correlation(i, j);
+pub fn inferred(inferred: &Inferred, arguments: &Arguments) -> Value {
+    let (fit, goodness) = (&inferred.fit, &inferred.goodness);
+    let correlation = |i: usize, j: usize| inferred.covariance.correlation(i, j);
     let row = |i: usize| (0..fit.point.len()).map(|j| correlation(i, j)).collect::<Vec<_>>();
     json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -100,21 +100,21 @@ pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
         "robust": arguments.robust,
         "robust_loss": arguments.robust.then(|| json!({
             "name": fit.loss.name(), "scale": fit.loss.scale(), "residuals_beyond": fit.beyond_loss(),
-            "covariance_factor": fit_result.covariance.loss_factor,
+            "covariance_factor": inferred.covariance.loss_factor,
         })),
-        "parameters": parameters(fit_result),
-        "covariance": fit_result.covariance.matrix,
+        "parameters": parameters(inferred),
+        "covariance": inferred.covariance.matrix,
         "correlation": (0..fit.point.len()).map(row).collect::<Value>(),
         "converged": fit.ending.converged(),
         "starts_agreeing": fit.agreeing_starts(),
         "starts": fit.starts.iter().map(|start| json!({
             "from": start.start, "to": start.point, "cost": start.cost, "iterations": start.iterations,
         })).collect::<Value>(),
-        "other_minima": fit_result.other_minima().iter().map(|(start, starts)| json!({
+        "other_minima": inferred.other_minima().iter().map(|(start, starts)| json!({
             "point": start.point, "chi_square_rise": 2.0 * (start.cost - fit.cost), "starts": starts,
         })).collect::<Value>(),
         "model_fails_beside": fit.jacobian.failing.iter().map(|(at, why)| json!({
-            "name": fit_result.parameters[*at].name, "why": why.to_string(),
+            "name": inferred.parameters[*at].name, "why": why.to_string(),
         })).collect::<Value>(),
         "evaluations": fit.evaluations,
         "cost": fit.cost,
@@ -127,30 +127,30 @@ pub fn inferred(fit_result: &Inferred, arguments: &Arguments) -> Value {
         })),
         "runs": goodness.runs,
         "jacobian_disagreement": fit.jacobian.disagreement,
-        "singular_values": fit_result.identifiability.singular_values,
-        "directions": fit_result.identifiability.directions,
-        "singular_value_floor": fit_result.identifiability.floor,
-        "not_determined": fit_result.identifiability.unidentifiable.iter().map(|c| json!({
+        "singular_values": inferred.identifiability.singular_values,
+        "directions": inferred.identifiability.directions,
+        "singular_value_floor": inferred.identifiability.floor,
+        "not_determined": inferred.identifiability.unidentifiable.iter().map(|c| json!({
             "words": c.words, "change": c.change,
         })).collect::<Value>(),
-        "profiles": profiles(fit_result),
-        "posterior": posterior(fit_result),
+        "profiles": profiles(inferred),
+        "posterior": posterior(inferred),
     })
 }
 
-fn parameters(fit_result: &Inferred) -> Value {
+fn parameters(inferred: &Inferred) -> Value {
     let one = |(at, parameter): (usize, &Parameter)| {
-        let sd = fit_result.standard_error(at);
-        let is_bound = fit_result.fit.is_bound(at);
+        let sd = inferred.standard_error(at);
+        let is_bound = inferred.fit.is_bound(at);
         let mut all = json!(parameter);
-        all["value"] = fit_result.fit.point[at].into();
+        all["value"] = inferred.fit.point[at].into();
         all["standard_error"] = (!is_bound).then_some(sd).into();
-        all["limit"] = json!(fit_result.limit(at).map(Limit::json));
+        all["limit"] = json!(inferred.limit(at).map(Limit::json));
         all["determined"] = sd.is_finite().into();
         all["at_bound"] = is_bound.into();
         all
     };
-    fit_result.parameters.iter().enumerate().map(one).collect()
+    inferred.parameters.iter().enumerate().map(one).collect()
 }
 
 fn end(end: End) -> Value {
@@ -162,13 +162,13 @@ fn end(end: End) -> Value {
     }
 }
 
-fn profiles(fit_result: &Inferred) -> Value {
-    let More::Profiles(profiles) = &fit_result.more else {
+fn profiles(inferred: &Inferred) -> Value {
+    let More::Profiles(profiles) = &inferred.more else {
         return Value::Null;
     };
     let one = |profile: &Profile| {
         json!({
-            "name": fit_result.parameters[profile.parameter].name,
+            "name": inferred.parameters[profile.parameter].name,
             "values": profile.values,
             "chi_square_rise": profile.rise,
             "intervals": profile.intervals.iter().map(|interval| json!({
@@ -179,8 +179,8 @@ fn profiles(fit_result: &Inferred) -> Value {
     profiles.iter().map(one).collect()
 }
 
-fn posterior(fit_result: &Inferred) -> Value {
-    let More::Sampled(sampled) = &fit_result.more else {
+fn posterior(inferred: &Inferred) -> Value {
+    let More::Sampled(sampled) = &inferred.more else {
         return Value::Null;
     };
     let (error, why, computed) = match &sampled.curves {

@@ -9,7 +9,7 @@ use crate::linear::norm;
 use crate::{Candidate, Fit, InferError, ModelError};
 use hertzchain_experiment::Experiment;
 use hertzchain_experiment::reading::PRELOAD_N;
-use hertzchain_measure::signal::Estimate;
+use hertzchain_measure::signal::{Estimate, median};
 
 /// What a way to measure asks of the rig, beyond another speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,8 +73,8 @@ impl ExpectedErrors {
         let rows = || data.rows.iter();
         let own = Observable::ALL.map(|of| {
             let measured = || rows().filter_map(move |row| Some((row, row.value(of)?.sigma)));
-            let freedom = measured().map(|(row, _)| row.freedom.values[of.index()]).collect();
-            Some((median(measured().map(|(_, sigma)| sigma).collect())?, median(freedom)?))
+            let freedom = measured().map(|(row, _)| row.freedom.values[of.index()]);
+            Some((middle(measured().map(|(_, sigma)| sigma))?, middle(freedom)?))
         });
         let all = Observable::ALL.map(|of| {
             let at = of.index();
@@ -83,12 +83,12 @@ impl ExpectedErrors {
             own[at].or(own[at ^ 1]).unwrap_or((usual, f64::INFINITY))
         });
         let both = rows().filter(|row| row.values[..2].iter().all(Option::is_some));
-        let correlations = both.filter_map(|row| row.correlation).collect();
-        let of_speed = median(rows().map(|row| row.freedom.speed).collect());
+        let correlations = both.filter_map(|row| row.correlation);
+        let of_speed = middle(rows().map(|row| row.freedom.speed));
         Self {
-            speed_m_s: median(rows().map(|row| row.speed_m_s.sigma).collect()).unwrap_or(0.0),
+            speed_m_s: middle(rows().map(|row| row.speed_m_s.sigma)).unwrap_or(0.0),
             values: all.map(|(sigma, _)| sigma),
-            correlation: median(correlations).unwrap_or(0.0),
+            correlation: middle(correlations).unwrap_or(0.0),
             freedom: Freedom {
                 speed: of_speed.unwrap_or(f64::INFINITY),
                 values: all.map(|(_, freedom)| freedom),
@@ -97,10 +97,8 @@ impl ExpectedErrors {
     }
 }
 
-/// The middle value, of an even number the upper one; `None` without any.
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
+    median(&values.collect::<Vec<_>>())
 }
 
 /// What could be done otherwise, beside shooting at other speeds.

@@ -1,9 +1,9 @@
 //! Whether speeds are in another unit than m/s, by what times of flight they make.
 
-use super::candidates::median;
 use super::model::Speeds;
 use super::problem::MeasuredCurve;
 use crate::data::Observable;
+use hertzchain_measure::signal::median;
 
 /// A smaller unit of speed, and how many make 1 m/s.
 const SMALLER: [(&str, f64); 2] = [("cm/s", 100.0), ("mm/s", 1000.0)];
@@ -36,6 +36,6 @@ impl MeasuredCurve {
             Some((measured / predicted[Observable::Incident.index()]?).ln())
         };
         let rows = self.data.rows.iter().zip(&curve);
-        median(rows.filter_map(miss).collect())
+        median(&rows.filter_map(miss).collect::<Vec<_>>())
     }
 }

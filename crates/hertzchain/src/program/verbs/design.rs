@@ -90,7 +90,7 @@ fn expected(errors: &ExpectedErrors) -> String {
         false => String::new(),
     };
     format!(
-        "Expected errors (medians of the data's; assumed where it has none): speed_m_s {}, {}, tof_correlation {}{widened}",
+        "Expected errors (medians of the data's; usual ones where it has none): speed_m_s {}, {}, tof_correlation {}{widened}",
         digits(errors.speed_m_s, 3),
         named.collect::<Vec<_>>().join(", "),
         digits(errors.correlation, 3)

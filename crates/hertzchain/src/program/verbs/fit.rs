@@ -102,21 +102,21 @@ fn write(
 /// Files that any fit has, the last ones.
 fn write_inferred(
     mut folder: Folder,
-    fit_result: &Inferred,
+    inferred: &Inferred,
     (all, tables): (&serde_json::Value, &[(&'static str, String)]),
 ) -> Result<(), Failure> {
     folder.write(FIT, format!("{all:#}\n").as_bytes())?;
     folder.tables(tables)?;
-    folder.figure("singular-values", &pictures::singular_values(fit_result))?;
-    match &fit_result.more {
+    folder.figure("singular-values", &pictures::singular_values(inferred))?;
+    match &inferred.more {
         More::Nothing => {}
         More::Profiles(profiles) => {
-            folder.figure("profiles", &pictures::profiles(fit_result, profiles))?;
+            folder.figure("profiles", &pictures::profiles(inferred, profiles))?;
         }
         More::Sampled(sampled) => {
             folder.write(fit::CHAIN, &fit::saved(&sampled.chain)?)?;
             if let Ok(posterior) = &sampled.posterior {
-                folder.figure("corner", &pictures::corner(fit_result, posterior))?;
+                folder.figure("corner", &pictures::corner(inferred, posterior))?;
             }
         }
     }

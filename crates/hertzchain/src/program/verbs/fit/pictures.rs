@@ -125,12 +125,12 @@ fn spreads(table: &TableFit<'_>, Inferred { fit, covariance, .. }: &Inferred) ->
         .collect()
 }
 
-fn labels(fit_result: &Inferred) -> Vec<String> {
+fn labels(inferred: &Inferred) -> Vec<String> {
     let label = |parameter: &Parameter| match parameter.unit.as_str() {
         "" => parameter.name.clone(),
         unit => format!("{} ({})", parameter.name, in_markup(unit)),
     };
-    fit_result.parameters.iter().map(label).collect()
+    inferred.parameters.iter().map(label).collect()
 }
 
 /// A unit with its powers raised: `N/m^(3/2)` as a figure shows it.
@@ -148,15 +148,15 @@ fn in_markup(unit: &str) -> String {
 
 /// Rise of chi-square along each parameter, beside the parabola that the
 /// covariance stands for.
-pub(super) fn profiles(fit_result: &Inferred, profiles: &[Profile]) -> Figure {
-    let labels = labels(fit_result);
+pub(super) fn profiles(inferred: &Inferred, profiles: &[Profile]) -> Figure {
+    let labels = labels(inferred);
     let curves: Vec<ProfileCurve> = (profiles.iter())
         .map(|profile| ProfileCurve {
             label: &labels[profile.parameter],
             values: &profile.values,
             rise: &profile.rise,
-            best: fit_result.fit.point[profile.parameter],
-            standard_error: Some(fit_result.covariance.sd[profile.parameter]),
+            best: inferred.fit.point[profile.parameter],
+            standard_error: Some(inferred.covariance.sd[profile.parameter]),
             levels: &[(1.0, "68 %"), (RISE_OF_95_PERCENT, "95 %")],
         })
         .collect();
@@ -164,20 +164,20 @@ pub(super) fn profiles(fit_result: &Inferred, profiles: &[Profile]) -> Figure {
 }
 
 /// The posterior of each parameter and pair, beside the covariance's.
-pub(super) fn corner(fit_result: &Inferred, posterior: &Posterior) -> Figure {
+pub(super) fn corner(inferred: &Inferred, posterior: &Posterior) -> Figure {
     Corner {
-        labels: &labels(fit_result),
+        labels: &labels(inferred),
         samples: &posterior.samples,
-        marks: &fit_result.fit.point,
-        covariance: &fit_result.covariance.matrix,
+        marks: &inferred.fit.point,
+        covariance: &inferred.covariance.matrix,
     }
     .figure()
 }
 
 /// Singular values of the Jacobian, each parameter in units of its scale.
-pub(super) fn singular_values(fit_result: &Inferred) -> Figure {
-    let found = &fit_result.identifiability;
-    let names = fit_result.parameters.iter().map(|p| p.name.clone());
+pub(super) fn singular_values(inferred: &Inferred) -> Figure {
+    let found = &inferred.identifiability;
+    let names = inferred.parameters.iter().map(|p| p.name.clone());
     SingularValues {
         names: &names.collect::<Vec<String>>(),
         values: &found.singular_values,

@@ -21,29 +21,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     folder.map_or(Ok(()), |folder| write(folder, &fit_result, &all))
 }
 
-fn text(fit_result: &Pulsed, arguments: &Arguments) -> String {
-    let records = &fit_result.problem.records;
+fn text(pulsed: &Pulsed, arguments: &Arguments) -> String {
+    let records = &pulsed.problem.records;
     let noise = records.iter().flat_map(|record| &record.sigma_v);
     let noise_v = noise.fold(0.0, |most: f64, sigma| most.max(*sigma));
     let mut text = format!(
         "{}\n{} shots sample by sample: {} means of samples, each known to {} mV or better\n\n{}\n{}",
-        heading(fit_result.problem.model.experiment.title()),
+        heading(pulsed.problem.model.experiment.title()),
         records.len(),
-        fit_result.problem.residual_count(),
+        pulsed.problem.residual_count(),
         digits(1e3 * noise_v, 2),
-        report::values(&fit_result.inferred),
-        lines(inference::references(&fit_result.problem.model))
+        report::values(&pulsed.inferred),
+        lines(inference::references(&pulsed.problem.model))
     );
-    text +=
-        &format!("The model's signals pass the amplifier's filters: {}\n", fit_result.filters());
-    text += &report::described(&fit_result.inferred);
-    text += &lines(fit_result.unasked(arguments));
-    text += &report::determined(&fit_result.inferred, &advice);
-    text += &report::more(&fit_result.inferred);
-    text += &report::warnings(&fit_result.inferred);
-    if !fit_result.refused.is_empty() {
-        text += &format!("{} records were left out:\n", fit_result.refused.len());
-        let reported = fit_result.refused.iter().take(REPORTED);
+    text += &format!("The model's signals pass the amplifier's filters: {}\n", pulsed.filters());
+    text += &report::described(&pulsed.inferred);
+    text += &lines(pulsed.unasked(arguments));
+    text += &report::determined(&pulsed.inferred, &advice);
+    text += &report::more(&pulsed.inferred);
+    text += &report::warnings(&pulsed.inferred);
+    if !pulsed.refused.is_empty() {
+        text += &format!("{} records were left out:\n", pulsed.refused.len());
+        let reported = pulsed.refused.iter().take(REPORTED);
         text += &reported.map(|why| format!("  {why}\n")).collect::<String>();
     }
     text
@@ -58,12 +57,12 @@ fn advice() -> Vec<String> {
     ]
 }
 
-fn write(mut folder: Folder, fit_result: &Pulsed, all: &Value) -> Result<(), Failure> {
-    let shown = shown(fit_result)?;
+fn write(mut folder: Folder, pulsed: &Pulsed, all: &Value) -> Result<(), Failure> {
+    let shown = shown(pulsed)?;
     folder.write("pulses.csv", pulses_csv(&shown).as_bytes())?;
     folder.figure("pulses", &picture(&shown))?;
-    let tables = tables_of_any(all, &fit_result.inferred.more);
-    write_inferred(folder, &fit_result.inferred, (all, &tables))
+    let tables = tables_of_any(all, &pulsed.inferred.more);
+    write_inferred(folder, &pulsed.inferred, (all, &tables))
 }
 
 /// The slowest and the fastest record with the fit, residuals below each.

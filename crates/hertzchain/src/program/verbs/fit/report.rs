@@ -69,16 +69,16 @@ fn unit(fit_result: &FitResult) -> String {
     })
 }
 
-pub(super) fn described(fit_result: &Inferred) -> String {
-    correlations(fit_result)
-        + &goodness(&fit_result.goodness)
-        + &robust(fit_result)
-        + &derivatives(fit_result)
+pub(super) fn described(inferred: &Inferred) -> String {
+    correlations(inferred)
+        + &goodness(&inferred.goodness)
+        + &robust(inferred)
+        + &derivatives(inferred)
 }
 
 /// Which loss was robust, and what it makes of the errors.
-fn robust(fit_result: &Inferred) -> String {
-    let loss = fit_result.fit.loss;
+fn robust(inferred: &Inferred) -> String {
+    let loss = inferred.fit.loss;
     if loss == Loss::Squares {
         return String::new();
     }
@@ -86,64 +86,64 @@ fn robust(fit_result: &Inferred) -> String {
         "Robust loss ({}): {} of {} residuals, those beyond {} standard errors, count by their size; \
          the covariance is {} times that of least squares, but for what priors say\n",
         loss.name(),
-        fit_result.fit.beyond_loss(),
-        fit_result.fit.residuals.len(),
+        inferred.fit.beyond_loss(),
+        inferred.fit.residuals.len(),
         loss.scale(),
-        digits(fit_result.covariance.loss_factor, 3)
+        digits(inferred.covariance.loss_factor, 3)
     )
 }
 
-fn derivatives(fit_result: &Inferred) -> String {
-    let worst = fit_result.fit.jacobian.worst_disagreement();
+fn derivatives(inferred: &Inferred) -> String {
+    let worst = inferred.fit.jacobian.worst_disagreement();
     format!("Derivatives by two step sizes agree within {}\n", percent(worst))
 }
 
-pub(super) fn warnings(fit_result: &Inferred) -> String {
-    let doubt = doubt(&fit_result.fit.ending);
+pub(super) fn warnings(inferred: &Inferred) -> String {
+    let doubt = doubt(&inferred.fit.ending);
     let mut text = doubt.map_or(String::new(), |doubt| format!("warning: {doubt}\n"));
-    text += &edges(fit_result);
-    let rough = rough(&fit_result.parameters, &fit_result.fit.jacobian);
+    text += &edges(inferred);
+    let rough = rough(&inferred.parameters, &inferred.fit.jacobian);
     text += &rough.map_or(String::new(), |reported| format!("warning: {reported}.\n"));
-    text += &misfit(&fit_result.goodness)
+    text += &misfit(&inferred.goodness)
         .map_or(String::new(), |reported| format!("warning: {reported}.\n"));
-    if let Err(why) = &fit_result.limits {
+    if let Err(why) = &inferred.limits {
         text += &format!("No limit of parameters at bounds: {why}\n");
     }
-    if fit_result.fit.starts.len() > 1 {
-        let (agree, all) = (fit_result.fit.agreeing_starts(), fit_result.fit.starts.len());
+    if inferred.fit.starts.len() > 1 {
+        let (agree, all) = (inferred.fit.agreeing_starts(), inferred.fit.starts.len());
         text += &format!("{agree} of {all} starts came to this minimum.\n");
     }
-    text + &other_minima(fit_result)
+    text + &other_minima(inferred)
 }
 
 /// That the best fit is next to where the model can't be computed.
-fn edges(fit_result: &Inferred) -> String {
+fn edges(inferred: &Inferred) -> String {
     let line = |(at, error): &(usize, ModelError)| {
         format!(
             "warning: the model fails next to this {}: {error}. The fit can't go beyond, and its errors say nothing of \
              that\n",
-            fit_result.parameters[*at].name
+            inferred.parameters[*at].name
         )
     };
-    fit_result.fit.jacobian.failing.iter().map(line).collect()
+    inferred.fit.jacobian.failing.iter().map(line).collect()
 }
 
 /// Other minima that fit as well: errors hold for one of them.
-fn other_minima(fit_result: &Inferred) -> String {
-    let minima = fit_result.other_minima();
+fn other_minima(inferred: &Inferred) -> String {
+    let minima = inferred.other_minima();
     if minima.is_empty() {
         return String::new();
     }
     let line = |(start, count): &(&Started, usize)| {
-        let values = fit_result.parameters.iter().zip(&start.point);
+        let values = inferred.parameters.iter().zip(&start.point);
         let values = values.map(|(parameter, value)| {
             format!("{} = {} {}", parameter.name, digits(*value, 6), parameter.unit)
         });
         format!(
             "  {} (χ² {} by {}, {count} starts)\n",
             values.collect::<Vec<_>>().join(", ").trim_end(),
-            if start.cost < fit_result.fit.cost { "lower" } else { "higher" },
-            digits(2.0 * (start.cost - fit_result.fit.cost).abs(), 2)
+            if start.cost < inferred.fit.cost { "lower" } else { "higher" },
+            digits(2.0 * (start.cost - inferred.fit.cost).abs(), 2)
         )
     };
     let lines: String = minima.iter().map(line).collect();
@@ -152,11 +152,11 @@ fn other_minima(fit_result: &Inferred) -> String {
     )
 }
 
-pub(super) fn values(fit_result: &Inferred) -> String {
-    let parameters = fit_result.parameters.iter().enumerate();
+pub(super) fn values(inferred: &Inferred) -> String {
+    let parameters = inferred.parameters.iter().enumerate();
     let row = |(at, parameter): (usize, &Parameter)| {
-        let (value, sd) = (fit_result.fit.point[at], fit_result.standard_error(at));
-        let limit = fit_result.limit(at).map(limit).unwrap_or_default();
+        let (value, sd) = (inferred.fit.point[at], inferred.standard_error(at));
+        let limit = inferred.limit(at).map(limit).unwrap_or_default();
         let prior = match parameter.prior {
             Prior::Normal { mean, sd } => format!(", prior {}", estimate(parameter, mean, sd)),
             _ => String::new(),
@@ -185,11 +185,11 @@ const REPORTED: f64 = 0.5;
 
 const PAIRS: usize = 6;
 
-fn correlations(fit_result: &Inferred) -> String {
-    let name = |at: usize| &fit_result.parameters[at].name;
-    let count = fit_result.parameters.len();
+fn correlations(inferred: &Inferred) -> String {
+    let name = |at: usize| &inferred.parameters[at].name;
+    let count = inferred.parameters.len();
     let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
-    let known = pairs.filter_map(|(i, j)| Some((i, j, fit_result.covariance.correlation(i, j)?)));
+    let known = pairs.filter_map(|(i, j)| Some((i, j, inferred.covariance.correlation(i, j)?)));
     let mut reported: Vec<(usize, usize, f64)> =
         known.filter(|pair| pair.2.abs() >= REPORTED).collect();
     reported.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
@@ -247,14 +247,14 @@ fn accuracy(fit_result: &FitResult) -> String {
 }
 
 /// What the data determine and what not, and what would help.
-pub(super) fn determined(fit_result: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
-    let found = &fit_result.identifiability;
-    if !fit_result.fit.ending.converged() {
+pub(super) fn determined(inferred: &Inferred, advice: &dyn Fn() -> Vec<String>) -> String {
+    let found = &inferred.identifiability;
+    if !inferred.fit.ending.converged() {
         return "The fit found no minimum: what the data determine is not known where it ended.\n"
             .to_owned();
     }
     let (known, all) = (found.determined(), found.singular_values.len());
-    if known == all && fit_result.goodness.is_rejected() {
+    if known == all && inferred.goodness.is_rejected() {
         return String::new();
     }
     if known == all {
@@ -265,7 +265,7 @@ pub(super) fn determined(fit_result: &Inferred, advice: &dyn Fn() -> Vec<String>
     }
     let mut text =
         format!("\nThe data determine {known} of {all} combinations of the parameters.\n");
-    if fit_result.is_closed_by_priors() {
+    if inferred.is_closed_by_priors() {
         return text.replace(".\n", ", priors the others.\n");
     }
     for confusion in &found.unidentifiable {
@@ -277,15 +277,15 @@ pub(super) fn determined(fit_result: &Inferred, advice: &dyn Fn() -> Vec<String>
     text
 }
 
-pub(super) fn more(fit_result: &Inferred) -> String {
-    match &fit_result.more {
+pub(super) fn more(inferred: &Inferred) -> String {
+    match &inferred.more {
         More::Nothing => String::new(),
-        More::Profiles(profiles) => intervals_of_profiles(fit_result, profiles),
-        More::Sampled(sampled) => sampled_text(fit_result, sampled),
+        More::Profiles(profiles) => intervals_of_profiles(inferred, profiles),
+        More::Sampled(sampled) => sampled_text(inferred, sampled),
     }
 }
 
-fn intervals_of_profiles(fit_result: &Inferred, profiles: &[Profile]) -> String {
+fn intervals_of_profiles(inferred: &Inferred, profiles: &[Profile]) -> String {
     let end = |end: End| match end {
         End::At(value) => digits(value, 6),
         End::Bound(value) => format!("{} (its bound)", digits(value, 4)),
@@ -293,7 +293,7 @@ fn intervals_of_profiles(fit_result: &Inferred, profiles: &[Profile]) -> String 
         End::ModelFails(value) => format!("{} (where the model fails)", digits(value, 4)),
     };
     let row = |profile: &Profile| {
-        let name = fit_result.parameters[profile.parameter].title();
+        let name = inferred.parameters[profile.parameter].title();
         let ends = profile
             .intervals
             .iter()
@@ -312,7 +312,7 @@ fn interpolated(error: f64, computed_m_s: &[f64]) -> String {
     }
 }
 
-fn sampled_text(fit_result: &Inferred, sampled: &Sampled) -> String {
+fn sampled_text(inferred: &Inferred, sampled: &Sampled) -> String {
     let chain = &sampled.chain;
     let how = match &sampled.curves {
         Curves::Computed(None) => "every curve computed".to_owned(),
@@ -349,7 +349,7 @@ fn sampled_text(fit_result: &Inferred, sampled: &Sampled) -> String {
     };
     let head =
         ["posterior", "median", "68 %", "95 %", "steps correlated", "R-hat", "effective samples"];
-    text + &format::table(head, fit_result.parameters.iter().enumerate().map(row))
+    text + &format::table(head, inferred.parameters.iter().enumerate().map(row))
 }
 
 fn alternatives(alternatives: &AlternativeModels) -> String {

@@ -93,7 +93,7 @@ fn with_curve(chart: Chart, (number, case): (usize, &Case), time: usize) -> Char
         .marker(marker)
         .y_error(&column(&|point| 1e6 * bar(point.1.sigma)))
         .x_error(&column(&|point| bar(point.0.speed_m_s.sigma)));
-    let fit_result = column(&|point| match law {
+    let fitted = column(&|point| match law {
         Ok(law) => 1e6 * law.at(point.0.speed_m_s.value),
         Err(_) => f64::NAN,
     });
@@ -101,7 +101,7 @@ fn with_curve(chart: Chart, (number, case): (usize, &Case), time: usize) -> Char
         Ok(Ok(Some(false))) => Dash::Dashed,
         _ => Dash::Solid,
     };
-    let line = Series::line("", &speeds, &fit_result).dash(dash);
+    let line = Series::line("", &speeds, &fitted).dash(dash);
     chart.with(points.colour(colour)).with(line.colour(colour).width(FIT_WIDTH))
 }
 
