@@ -309,15 +309,25 @@ impl Measurement {
             }
             shot.identify(record.speed_error_m_s, options);
             self.hold_samples(&mut shot);
-            let mut examples = self.examples.iter();
-            let is_new = !examples.any(|example| example.shot.case == shot.case);
-            if shot.flight.is_ok() && is_new {
-                self.examples.push(Example::new(&shot, record, range));
-            }
+            self.keep_example(&shot, record, range);
             if self.flagged.len() < options.most_flagged && !shot.flags().is_empty() {
                 self.flagged.push(Example::new(&shot, record, range));
             }
             self.shots.push(shot);
+        }
+    }
+
+    /// Keeps a shot with its samples that is the first good one of its case, or the first with a time.
+    fn keep_example(&mut self, shot: &Shot, record: &Record, range: Option<(usize, usize)>) {
+        if shot.flight.is_err() {
+            return;
+        }
+        match self.examples.iter_mut().find(|example| example.shot.case == shot.case) {
+            None => self.examples.push(Example::new(shot, record, range)),
+            Some(example) if example.shot.is_dubious() && !shot.is_dubious() => {
+                *example = Example::new(shot, record, range);
+            }
+            Some(_) => {}
         }
     }
 

@@ -209,17 +209,38 @@ impl Marker {
     }
 }
 
-/// Returns the colour and marker of a case in every figure: the paper's for its liquids, known by
-/// the first word of the name, else the next by `number`.
-pub fn case_look(case: &str, number: usize) -> (Colour, Marker) {
-    match case.split(|c: char| !c.is_alphanumeric()).next() {
-        Some("dry") => (Colour::BLACK, Marker::OpenCircle),
-        Some("pump") => (Colour::GREEN, Marker::Triangle),
-        Some("gear") => (Colour::BLUE, Marker::Square),
-        Some("motor") => (Colour::VERMILION, Marker::Circle),
-        // The palette has the four of above first.
-        _ => (Colour::PALETTE[(number + 4) % Colour::PALETTE.len()], Marker::of_index(number + 4)),
+type Look = (Colour, Marker);
+
+/// Looks of the paper's liquids, known by the first word of a name.
+const OF_PAPER: [(&str, Look); 4] = [
+    ("dry", (Colour::BLACK, Marker::OpenCircle)),
+    ("pump", (Colour::GREEN, Marker::Triangle)),
+    ("gear", (Colour::BLUE, Marker::Square)),
+    ("motor", (Colour::VERMILION, Marker::Circle)),
+];
+
+/// Returns the colour and marker of a case among those of a figure: the paper's for the first that is
+/// called as one of its liquids, another for each further one.
+pub fn case_look(case: &str, among: &[&str]) -> Look {
+    let first = |name: &str| name.split(|c: char| !c.is_alphanumeric()).next().map(str::to_owned);
+    let own = |name: &str| OF_PAPER.iter().find(|of| first(name).as_deref() == Some(of.0));
+    let is_first = |at: usize| {
+        let mut before = among[..at].iter();
+        own(among[at]).is_some_and(|of| before.all(|name| own(name) != Some(of)))
+    };
+    let at = among.iter().position(|name| *name == case);
+    match (at, own(case)) {
+        (Some(at), Some((_, look))) if is_first(at) => return *look,
+        (None, Some((_, look))) => return *look,
+        _ => {}
     }
+    let before = (0..at.unwrap_or(among.len())).filter(|at| !is_first(*at)).count();
+    // The palette has the four of above first.
+    let count = Colour::PALETTE.len();
+    let looks = (0..count * count)
+        .map(|i| (Colour::PALETTE[(i + 4) % count], Marker::of_index(i + 4 + i / count)));
+    let is_free = |look: &Look| OF_PAPER.iter().all(|of| of.1 != *look);
+    looks.filter(is_free).cycle().nth(before).unwrap_or(OF_PAPER[0].1)
 }
 
 /// One data set of a chart: a line, points or a band.

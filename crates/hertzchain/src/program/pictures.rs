@@ -63,9 +63,14 @@ fn axis(quantity: &str, unit: &str, units: Units) -> String {
 }
 
 /// Steep pulses are clearer unbroken: the first three colours differ enough in
-/// hue and lightness, dashes help after them.
+/// hue and lightness, dashes help after them, and where the seven colours come again.
 fn dash(line: usize) -> Dash {
-    if line < 3 { Dash::Solid } else { Dash::Dashed }
+    match line {
+        0..3 => Dash::Solid,
+        3..10 => Dash::Dashed,
+        10..17 => Dash::DashDotted,
+        _ => Dash::Dotted,
+    }
 }
 
 /// Signals of sensors against time, one panel a quantity.

@@ -193,7 +193,7 @@ fn ratio_series(evidence: &Evidence, case: &str) -> Series {
     let ratios = evidence.ratios(case);
     let speeds: Vec<f64> = ratios.iter().map(|r| r.speed_m_s).collect();
     let values: Vec<f64> = ratios.iter().map(|r| r.incident).collect();
-    let (colour, marker) = case_look(case, 0);
+    let (colour, marker) = case_look(case, &[]);
     Series::line(label(case), &speeds, &values)
         .marker(marker)
         .colour(colour)
@@ -308,7 +308,7 @@ pub fn oil_film_figure(of: &OilFilms) -> Figure {
     let [film, _, scaled, paper] = of.models.each_ref().map(|model| incident(&model.evidence));
     let count = SPEEDS_M_S.len();
     let panel = |(at, case): (usize, &&str)| {
-        let (colour, marker) = case_look(case, 0);
+        let (colour, marker) = case_look(case, &[]);
         let [film, scaled, paper] = [&film, &scaled, &paper]
             .map(|all| all.get(at * count..(at + 1) * count).unwrap_or(&[]));
         let range = of.ranges.get(at).map_or(&[][..], Vec::as_slice);

@@ -22,7 +22,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.colors import to_hex
-from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from ._options import with_options
@@ -39,9 +39,10 @@ Drawn = TypeVar("Drawn")
 STYLE = str(Path(__file__).with_name("hertzchain.mplstyle"))
 """Path of the style sheet."""
 
-MICRO = 1e6
-COLUMN = 3.35
+MICRO, COLUMN = 1e6, 3.35
 MARKERS = ("o", "s", "^", "D", "v")
+ABOVE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2}
+OF_CASES = {"dry": "#000000", "pump": "#008a64", "gear": "#0060a6", "motor": "#ce5600"}
 
 
 def style() -> AbstractContextManager[None]:
@@ -84,16 +85,14 @@ def time_scale(dimensionless: bool) -> tuple[float, str]:
     return (1.0, "") if dimensionless else (MICRO, " (µs)")
 
 
-def colour_of(at: int) -> str:
-    """One of the style's colours: named "C0" it would be whichever is the first when the figure is saved."""
-    return to_hex(f"C{at % 7}")
+def colour_of(at: int, name: str = "") -> str:
+    """The program's colour of a case, else the style's: "C0" would be whichever is the first when the figure is saved."""
+    return OF_CASES.get(name.split(" ")[0], to_hex(f"C{at % 7}"))
 
 
 @styled
 def signals(shot: Shot | Trace, sensors: Sequence[str] | None = None, ax: Axes | None = None) -> Axes:
-    """Signals of sensors against time.
-
-    As in Fig. 2 of [Labbe2017].
+    """Signals of sensors against time, as in Fig. 2 of [Labbe2017].
 
     Parameters
     ----------
@@ -207,9 +206,7 @@ def _points(ax: Axes, curve: Curve, column: str, factor: float, **look: Any) -> 
 def times_of_flight(
     curves: Curve | Mapping[str, Curve], laws: bool = False, logarithmic: bool = True, ax: Axes | None = None
 ) -> Axes:
-    """Incident and reflected times of flight against speed.
-
-    As in Fig. 3 of [Labbe2017].
+    """Incident and reflected times of flight against speed, as in Fig. 3 of [Labbe2017].
 
     Parameters
     ----------
@@ -236,7 +233,7 @@ def times_of_flight(
     dimensionless = all(isinstance(curve, Sweep) and curve.dimensionless for curve in named.values())
     scale, unit = time_scale(dimensionless)
     for at, (name, curve) in enumerate(named.items()):
-        colour = colour_of(at)
+        colour = colour_of(at, name)
         ends = [("incident", "tof_incident_s", "-", colour), ("reflected", "tof_reflected_s", "--", "none")]
         for end, column, dashes, face in ends:
             label = f"{name} {end}".strip()
@@ -251,17 +248,21 @@ def times_of_flight(
         ax.set(xscale="log", yscale="log")
         for axis in (ax.xaxis, ax.yaxis):
             plain_ticks(axis, (1.0, 2.0, 3.0, 5.0, 7.0))
-    ax.legend()
+    ax.legend(**ABOVE)
     return ax
 
 
 def plain_ticks(axis: Axis, steps: Sequence[float]) -> None:
-    """Ticks of a logarithmic axis at these steps of each decade, as plain numbers."""
-    formatter = ScalarFormatter()
-    formatter.set_scientific(False)
-    axis.set_major_locator(LogLocator(subs=steps))
-    axis.set_major_formatter(formatter)
+    """Ticks of a logarithmic axis at these steps of each decade, of two or more at its ends, as plain numbers."""
+    wide = np.ptp(np.log10(axis.get_view_interval())) > 2.0
+    axis.set_major_locator(LogLocator(subs=(1.0,) if wide else steps))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+def _relative(curve: Curve, column: str) -> Floats:
+    """Standard errors of a column over it; 0 of a computed one."""
+    return (found := curve._columns()).get(f"{column}_error", 0.0 * found[column]) / found[column]
 
 
 CONTINUED = np.log(1.02)
@@ -282,9 +283,7 @@ def _continued(at: Floats, x: Floats, y: Floats) -> Floats:
 def ratios(
     wet: Mapping[str, Curve], dry: Curve, end: str = "incident", markers: Mapping[str, str] | None = None, ax: Axes | None = None
 ) -> Axes:
-    """Times of flight of wet chains over those of the dry one, against speed.
-
-    As in Fig. 4 of [Labbe2017].
+    """Times of flight of wet chains over those of the dry one, against speed, as in Fig. 4 of [Labbe2017].
 
     Parameters
     ----------
@@ -319,18 +318,19 @@ def ratios(
     order = np.argsort(reference["speed_m_s"])
     known = np.log(reference["speed_m_s"][order]), np.log(reference[column][order])
     for at, (name, curve) in enumerate(wet.items()):
-        columns = curve._columns()
-        speeds = columns["speed_m_s"]
+        speeds, own = (curve._columns()[of] for of in ("speed_m_s", column))
         times = _continued(np.log(speeds), *known)
         if beyond := int(np.isinf(times).sum()):
             text = f"{beyond} of {speeds.size} ratios of {name} are not drawn: the dry curve has no times of flight at their speeds"
             warnings.warn(text, ExperimentWarning, stacklevel=3)
-        ratio = columns[column] / np.exp(np.where(np.isinf(times), np.nan, times))
-        marker = (markers or {}).get(name, MARKERS[at % 5])
-        ax.plot(speeds, ratio, marker=marker, color=colour_of(at), label=name)
+        ratio = own / np.exp(np.where(np.isinf(times), np.nan, times))
+        error = ratio * np.hypot(_relative(curve, column), np.interp(np.log(speeds), known[0], _relative(dry, column)[order]))
+        bars, line = (None, "-") if isinstance(curve, Sweep) else (error, "none")
+        look = {"marker": (markers or {}).get(name, MARKERS[at % 5]), "color": colour_of(at, name), "linestyle": line}
+        ax.errorbar(speeds, ratio, bars, label=name, **look)
     ax.axhline(1.0, color="0.3", linewidth=0.6)
     ax.set(xlabel="Speed of the striker" + ("" if getattr(dry, "dimensionless", False) else " (m/s)"), ylabel=f"{end.capitalize()} ToF, wet / dry")
-    ax.legend()
+    ax.legend(**ABOVE)
     return ax
 
 

@@ -91,9 +91,15 @@ fn write(
     fit_result: &FitResult,
     all: &serde_json::Value,
 ) -> Result<(), Failure> {
-    for (at, table) in fit_result.tables().iter().enumerate() {
+    let tables = fit_result.tables();
+    for (at, table) in tables.iter().enumerate() {
         let name = if at == 0 { "fit".to_owned() } else { format!("fit-{}", at + 1) };
-        folder.figure(&name, &pictures::fit(table, &fit_result.inferred))?;
+        let mut title = table.curve.model.experiment.title().to_owned();
+        if tables.len() > 1 {
+            let file = Path::new(&table.curve.data.file).file_name().unwrap_or_default();
+            title = format!("{}: {title}", file.to_string_lossy());
+        }
+        folder.figure(&name, &pictures::fit(table, &fit_result.inferred, &title))?;
     }
     let tables = fit::tables(fit_result, all);
     write_inferred(folder, &fit_result.inferred, (all, &tables))

@@ -24,7 +24,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let speeds = sweep::speeds(&experiment, arguments)?;
     // A shard is recognised by its name, and computed only once.
     let replace = arguments.force || arguments.shard.is_some();
-    let folder = Folder::asked(arguments.out.as_deref(), &[SWEEP], replace)?;
+    let folder = Folder::asked(arguments.out.as_deref(), &[SWEEP], replace)?
+        .map(|folder| folder.with_optional(&["sweep"]));
     let counter = Counter::new("shots", speeds.len() as u64);
     let batch = sweep::batch(&experiment, speeds, arguments)?;
     if let Some(shard) = arguments.shard {
@@ -200,7 +201,10 @@ fn table_lines(style: Style, rows: &Rows) -> String {
 
 pub(super) fn write(mut folder: Folder, part: &BatchResult) -> Result<(), Failure> {
     folder.write(SWEEP, table_csv(part).as_bytes())?;
-    folder.figure("sweep", &pictures::sweep(part))?;
+    // Times of flight are all that it shows.
+    if !part.rows.flights().is_empty() {
+        folder.figure("sweep", &pictures::sweep(part))?;
+    }
     folder.finish_and_report()
 }
 

@@ -9,27 +9,27 @@ use hertzchain_infer::{Observable, Parameter, Posterior, Profile, RISE_OF_95_PER
 const LOOKS: [(Colour, Marker); 4] = [
     (Colour::BLUE, Marker::Circle),
     (Colour::VERMILION, Marker::OpenSquare),
-    (Colour::BLUE, Marker::Circle),
-    (Colour::VERMILION, Marker::OpenSquare),
+    (Colour::GREEN, Marker::Triangle),
+    (Colour::PURPLE, Marker::Diamond),
 ];
 
 /// Standard errors of the fitted curve that its band spans to either side: 95 %.
 const BAND: f64 = 1.96;
 
 /// Data with the fit and its band; residuals below.
-pub(super) fn fit(table: &TableFit<'_>, inferred: &Inferred) -> Figure {
+pub(super) fn fit(table: &TableFit<'_>, inferred: &Inferred, title: &str) -> Figure {
     let data = &table.curve.data;
-    let mut figure = Figure::single_column(130.0).share_x();
-    for times in [true, false] {
-        let shown: Vec<Observable> = Observable::ALL
-            .into_iter()
-            .filter(|of| of.is_time() == times && data.has(*of))
-            .collect();
-        if !shown.is_empty() {
-            figure = figure.panel(curves(table, &shown));
-        }
-    }
-    figure.panel(residuals(table, inferred))
+    let kinds = [true, false].map(|times| -> Vec<Observable> {
+        let all = Observable::ALL.into_iter();
+        all.filter(|of| of.is_time() == times && data.has(*of)).collect()
+    });
+    let charts = kinds.iter().filter(|shown| !shown.is_empty()).enumerate().map(|(at, shown)| {
+        let chart = curves(table, shown);
+        if at == 0 { chart.title(title) } else { chart }
+    });
+    let charts: Vec<Chart> = charts.collect();
+    let empty = Figure::single_column(75.0 + 55.0 * charts.len() as f64).share_x();
+    charts.into_iter().fold(empty, Figure::panel).panel(residuals(table, inferred))
 }
 
 fn scale(of: Observable) -> f64 {
@@ -41,7 +41,6 @@ fn curves(table: &TableFit<'_>, shown: &[Observable]) -> Chart {
     let label = if times { "Time of flight (µs)" } else { "Ratio of peaks" };
     let chart = Chart::new("Speed of the striker (m/s)", label).x_log();
     let chart = if times { chart.y_log() } else { chart };
-    let chart = chart.title(table.curve.model.experiment.title());
     let named = shown.iter().enumerate();
     named.fold(chart, |chart, (at, of)| {
         let line = if at == 0 { "fit" } else { "" };
@@ -84,8 +83,7 @@ fn residuals(table: &TableFit<'_>, inferred: &Inferred) -> Chart {
     let all: Vec<_> = residuals.zip(&spreads).collect();
     let sizes = all.iter().map(|((_, residual), sd)| residual.abs().max(BAND * **sd));
     let reach = sizes.filter(|size| size.is_finite()).fold(1.0, f64::max);
-    // Free paper above all points, or one may look like part of the legend.
-    let chart = chart.y_range(-1.1 * reach, LEGEND_ABOVE * reach);
+    let chart = chart.y_range(-1.1 * reach, 1.1 * reach);
     Observable::ALL.into_iter().filter(|of| data.has(*of)).fold(chart, |chart, of| {
         let own = || all.iter().filter(|(((_, other), _), _)| *other == of);
         let (speeds, values): (Vec<f64>, Vec<f64>) = own()
@@ -110,9 +108,6 @@ fn residuals(table: &TableFit<'_>, inferred: &Inferred) -> Chart {
         chart.with(points.colour(colour).marker(marker))
     })
 }
-
-/// Top of the residuals' axis over the largest of them: room for two lines of a legend.
-const LEGEND_ABOVE: f64 = 1.8;
 
 /// Standard errors of the fitted curve in those of each residual.
 fn spreads(table: &TableFit<'_>, Inferred { fit, covariance, .. }: &Inferred) -> Vec<f64> {

@@ -37,11 +37,12 @@ fn film(run_gauge: &GaugeResult, number: &Parameter) -> Chart {
         if let Some(at) = problem.parameters().iter().position(same) {
             let (value, sd) = (fit.point[at], Covariance::new(problem.parameters(), fit).sd[at]);
             if is_determined(value, sd) {
-                let band = Series::band("", &ends, &[value - sd; 2], &[value + sd; 2]);
-                chart = chart.with(band.colour(case_look("pump", 0).0));
+                let band =
+                    Series::band("its standard error", &ends, &[value - sd; 2], &[value + sd; 2]);
+                chart = chart.with(band.colour(Colour::BLUE));
             }
             let line = Series::line("all speeds together", &ends, &[value; 2]);
-            chart = chart.with(line.colour(case_look("pump", 0).0));
+            chart = chart.with(line.colour(Colour::BLUE));
         }
     }
     chart.with(measured(run_gauge, 0, 1.0))
@@ -122,7 +123,8 @@ fn curve(run_gauge: &GaugeResult, (number, oil): (usize, &Oil), of: usize, unit:
         unit * [k, a][of]
     };
     let values: Vec<f64> = speeds.iter().map(value).collect();
-    let (colour, _) = case_look(&oil.name, number);
+    let names: Vec<&str> = run_gauge.oils.iter().map(|oil| oil.name.as_str()).collect();
+    let (colour, _) = case_look(&oil.name, &names);
     let dashes = [Dash::Solid, Dash::Dashed, Dash::DashDotted, Dash::Dotted];
     Series::line(&oil.name, &speeds, &values).colour(colour).dash(dashes[number % dashes.len()])
 }

@@ -1,6 +1,6 @@
 //! Figures of what was measured.
 
-use hertzchain_figures::{Chart, Dash, Figure, Series, case_look};
+use hertzchain_figures::{Chart, Colour, Dash, Figure, Marker, Series, case_look};
 use hertzchain_measure::signal::{Estimate, Flight, Ratio};
 use hertzchain_measure::{Case, Curves, Example, Shot, SpeedRow, WetOverDry};
 
@@ -9,6 +9,10 @@ const MOST: usize = 4;
 /// How much of a record is shown before the first pulse and after the last, in
 /// incident times of flight.
 const MARGIN: f64 = 0.5;
+
+/// Free shares of a record's range below and above it; above stand the picks' names.
+const BELOW: f64 = 0.06;
+const ABOVE: f64 = 0.2;
 
 /// One shot of every case with its picks; `None` without any.
 pub(super) fn signals(examples: &[Example]) -> Option<Figure> {
@@ -32,12 +36,18 @@ pub(super) fn signal(example: &Example) -> Chart {
     let at = |time_s: f64| (time_s / shot.interval_s).max(0.0) as usize;
     let time_us = |index: usize| 1e6 * index as f64 * shot.interval_s;
     let mut chart = Chart::new("Time (µs)", "Signal (V)").title(&title(example));
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (name, volts) in example.names.iter().zip(&example.volts) {
         let end = at(to).min(volts.len());
         let first = at(from).min(end);
         let times: Vec<f64> = (first..end).map(time_us).collect();
+        low = volts[first..end].iter().copied().fold(low, f64::min);
+        high = volts[first..end].iter().copied().fold(high, f64::max);
         let name = if example.volts.len() > 1 { name } else { "" };
         chart = chart.with(Series::line(name, &times, &volts[first..end]).dash(Dash::Solid));
+    }
+    if high > low {
+        chart = chart.y_range(low - BELOW * (high - low), high + ABOVE * (high - low));
     }
     let Some(Flight { picks, .. }) = flight else { return chart };
     let back = picks.reflected.map(|back| (back, "reflected"));
@@ -52,18 +62,26 @@ fn title(example: &Example) -> String {
     let incident = flight.as_ref().ok();
     let incident =
         incident.map(|flight| format!("incident {:.2} µs", 1e6 * flight.incident_s.value));
-    [case, speed, incident].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let doubt = example.shot.is_dubious().then(|| "not counted".to_owned());
+    [case, speed, incident, doubt].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// Times of flight at the mean speeds with all their errors, and their power laws, dashed where
-/// the errors do not allow any.
+/// the errors do not allow any, dotted where no speed tests them.
 pub(super) fn times(curves: &Curves) -> Figure {
     let chart = Chart::new("Speed of the striker (m/s)", "Time of flight (µs)").x_log().y_log();
     let chart = chart.legend(curves.cases.len() != 1);
-    let cases = curves.cases.iter().enumerate();
+    let names = names(curves);
     both(&chart, |chart, time| {
-        cases.clone().fold(chart, |chart, case| with_curve(chart, case, time))
+        curves
+            .cases
+            .iter()
+            .fold(chart, |chart, case| with_curve(chart, case, case_look(&case.name, &names), time))
     })
+}
+
+fn names(curves: &Curves) -> Vec<&str> {
+    curves.cases.iter().map(|case| case.name.as_str()).collect()
 }
 
 /// A panel of incident and one of reflected times, 0 and 1.
@@ -77,14 +95,13 @@ fn both(empty: &Chart, filled: impl Fn(Chart, usize) -> Chart) -> Figure {
 const FIT_WIDTH: f64 = 0.7;
 
 /// Points of a case and their power law.
-fn with_curve(chart: Chart, (number, case): (usize, &Case), time: usize) -> Chart {
+fn with_curve(chart: Chart, case: &Case, (colour, marker): (Colour, Marker), time: usize) -> Chart {
     let law = [&case.laws.incident, &case.laws.reflected][time];
     let known: Vec<(&SpeedRow, Estimate)> =
         case.rows.iter().filter_map(|row| Some((row, row.at_mean_speed_s[time]?))).collect();
     let column = |value: &dyn Fn(&(&SpeedRow, Estimate)) -> f64| -> Vec<f64> {
         known.iter().map(value).collect()
     };
-    let (colour, marker) = case_look(&case.name, number);
     // A single shot may have no error: then there is no bar.
     let bar = |error: f64| if error.is_finite() { error } else { 0.0 };
     let speeds = column(&|point| point.0.speed_m_s.value);
@@ -99,6 +116,7 @@ fn with_curve(chart: Chart, (number, case): (usize, &Case), time: usize) -> Char
     });
     let dash = match law.as_ref().map(|law| case.supports(law)) {
         Ok(Ok(Some(false))) => Dash::Dashed,
+        Ok(Ok(None)) => Dash::Dotted,
         _ => Dash::Solid,
     };
     let line = Series::line("", &speeds, &fitted).dash(dash);
@@ -111,8 +129,7 @@ pub(super) fn ratios(curves: &Curves, reference: &str) -> Figure {
     let chart = Chart::new("Speed of the striker (m/s)", &label).x_log().h_line(1.0, "");
     let series = |wet: &WetOverDry, time: usize| {
         // The look that the case has beside its reference.
-        let number = curves.cases.iter().position(|case| case.name == wet.case).unwrap_or(0);
-        let (colour, marker) = case_look(&wet.case, number);
+        let (colour, marker) = case_look(&wet.case, &names(curves));
         let column = |of: fn(&Ratio) -> f64| {
             [&wet.incident, &wet.reflected][time].iter().map(of).collect::<Vec<f64>>()
         };
