@@ -46,6 +46,27 @@ impl Motion {
         }
     }
 
+    /// Acceleration in m/s² at a time in s of a smooth stretch that holds another time.
+    pub(crate) fn acceleration_m_s2(&self, time_s: f64, inside_s: f64) -> f64 {
+        match self {
+            Self::Sine { frequency_hz, .. } => -(TAU * frequency_hz).powi(2) * self.at(time_s).0,
+            Self::Pulse { amplitude_m, duration_s } if inside_s < *duration_s => {
+                let omega = TAU / duration_s;
+                0.5 * amplitude_m * omega * omega * (omega * time_s).cos()
+            }
+            Self::Pulse { .. } => 0.0,
+            Self::Table { times_s, positions_m } => {
+                let right = times_s.partition_point(|&t| t <= inside_s);
+                if right == 0 || right >= times_s.len() {
+                    return 0.0;
+                }
+                let cubic = Cubic::new(times_s, positions_m, right - 1);
+                let s = (time_s - times_s[right - 1]) / cubic.length;
+                (2.0 * cubic.c2 + 6.0 * cubic.c3 * s) / (cubic.length * cubic.length)
+            }
+        }
+    }
+
     /// The first time after `time_s` at which the motion is not smooth; a
     /// step must end there.
     pub(crate) fn next_break(&self, time_s: f64) -> f64 {
@@ -141,13 +162,30 @@ fn interpolate(times: &[f64], positions: &[f64], time: f64) -> (f64, f64) {
         return (last - first, 0.0);
     }
     let left = right - 1;
-    let h = times[right] - times[left];
-    let s = (time - times[left]) / h;
-    let (x0, x1) = (positions[left] - first, positions[right] - first);
-    let (d0, d1) = (h * slope(times, positions, left), h * slope(times, positions, right));
-    let (c2, c3) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
-    let position = x0 + s * (d0 + s * (c2 + s * c3));
-    (position, (d0 + s * (2.0 * c2 + 3.0 * s * c3)) / h)
+    let Cubic { length, d0, c2, c3 } = Cubic::new(times, positions, left);
+    let s = (time - times[left]) / length;
+    let position = positions[left] - first + s * (d0 + s * (c2 + s * c3));
+    (position, (d0 + s * (2.0 * c2 + 3.0 * s * c3)) / length)
+}
+
+/// One stretch: x − x₀ = d₀ s + c₂ s² + c₃ s³ over its length in s.
+struct Cubic {
+    length: f64,
+    d0: f64,
+    c2: f64,
+    c3: f64,
+}
+
+impl Cubic {
+    /// From this point to the next.
+    fn new(times: &[f64], positions: &[f64], left: usize) -> Self {
+        let length = times[left + 1] - times[left];
+        let first = positions[0];
+        let (x0, x1) = (positions[left] - first, positions[left + 1] - first);
+        let [d0, d1] = [left, left + 1].map(|at| length * slope(times, positions, at));
+        let (c2, c3) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
+        Self { length, d0, c2, c3 }
+    }
 }
 
 /// Slope of the parabola through a point and its neighbours; 0 at the ends,

@@ -337,20 +337,20 @@ static STRIKER: Fields = table! { "[striker]";
 
 static DRIVEN: Variants = variants! { "[driven]" motion;
     "sine" {
-        amplitude(Always): DISPLACEMENT, "largest displacement";
-        frequency(Always): positive("Hz"), "frequency";
+        amplitude(Always): DISPLACEMENT, "amplitude a of x = a sin(2πft)";
+        frequency(Always): positive("Hz"), "frequency f";
         radius: positive("m"), "radius of the driven body; default: as bead 1";
         material: Text, "name of a material";
     }
     "pulse" {
-        amplitude(Always): DISPLACEMENT, "largest displacement";
-        duration(Always): positive("s"), "duration of the push";
+        amplitude(Always): DISPLACEMENT, "amplitude a of x = a sin²(πt/T)";
+        duration(Always): positive("s"), "duration T of the push";
         radius: positive("m"), "radius of the driven body; default: as bead 1";
         material: Text, "name of a material";
     }
     "table" {
         times: Quantities("s"), "times, increasing";
-        positions: Quantities("m"), "positions, one a time, relative to the first";
+        positions: Quantities("m"), "positions, one a time, relative to the first; joined by cubics with the slopes of parabolas through three points, at rest at both ends";
         file: Text, "CSV file with columns time_s,position_m, beside this file";
         radius: positive("m"), "radius of the driven body; default: as bead 1";
         material: Text, "name of a material";

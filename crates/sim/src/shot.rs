@@ -349,7 +349,10 @@ impl Flight {
                 let fraction = if pick == Pick::Flank10 { 0.1 } else { 0.5 };
                 let [sensor, wall, back] = seen.flanks(passage, fraction);
                 let wall = wall?;
-                Some(Self { incident_s: wall - sensor?, reflected_s: back.map(|back| back - wall) })
+                // Where the signal does not fall below the flank between two pulses, it is that of
+                // the one before.
+                let reflected_s = back.map(|back| back - wall).filter(|time_s| *time_s > 0.0);
+                Some(Self { incident_s: wall - sensor?, reflected_s })
             }
             Pick::CrossCorrelation => correlated(seen, passage),
         }

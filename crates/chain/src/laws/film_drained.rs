@@ -30,7 +30,7 @@ impl Term<4> for FilmDrained {
         name: "film_drained",
         equation: "F = K w^{3/2} − K max(δ, 0)^{3/2},  w = δ + u,  \
                    u̇ = −u K w^{3/2}/(6πη R*² X² (1 + 5.5 y + y²)),  y = w/(2u),  \
-                   X = 1 − 1/√(1 + V/(πR* u²));  apart: u = −δ, F = 6πη R*² X² max(δ̇, 0)/u",
+                   X = 1 − 1/√(1 + V/(πR* u²));  while w would be below u/100: u = −δ, F = 6πη R*² X² max(δ̇, 0)/u",
         parameters: &[
             Parameter {
                 name: "viscosity",

@@ -2,6 +2,9 @@
 
 use crate::wave::{Flow, Observer, Piece, bracketed_root};
 
+/// Share of a step before whose end a contact has opened within it.
+const WITHIN: f64 = 1e-3;
+
 /// Notes when body 0 first separates from bead 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Separation {
@@ -30,7 +33,10 @@ impl Observer for Separation {
             let opened = self.pressed && piece.overlap(0, 1.0).0 < 0.0;
             let at = |theta: f64| (piece.time_s(theta), piece.body(0, theta).1);
             self.at_end = opened.then(|| at(1.0));
-            let within = opened && piece.has_given_length() && piece.overlap(0, 0.0).0 > 0.0;
+            // Where a force has ended before the contact opens, a step need not end at the opening.
+            let (overlap, rate) = piece.overlap(0, 1.0);
+            let passed = piece.has_given_length() || overlap < WITHIN * rate * piece.step_s();
+            let within = opened && passed && piece.overlap(0, 0.0).0 > 0.0;
             let root = || bracketed_root(|theta| -piece.overlap(0, theta).0, 0.0, 1.0, 1e-9);
             self.first = within.then(|| at(root())).or(self.first);
         }

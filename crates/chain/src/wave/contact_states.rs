@@ -23,8 +23,12 @@ pub(crate) struct ContactStates {
 }
 
 impl ContactStates {
-    /// All contacts as they rest at their overlaps in m.
-    pub(super) fn new(system: &System, stages: usize, overlap_m: impl Fn(usize) -> f64) -> Self {
+    /// All contacts as they are at their overlaps in m and rates in m/s.
+    pub(super) fn new(
+        system: &System,
+        stages: usize,
+        at_start: impl Fn(usize) -> (f64, f64),
+    ) -> Self {
         let mut contacts = Vec::new();
         for section in system.sections.iter().filter(|_| system.has_states) {
             let with_state = |term: &&TermColumns| term.law.info().nature == Nature::WithState;
@@ -32,10 +36,12 @@ impl ContactStates {
             for contact in section.contacts.clone().filter(|&c| system.has_contact(c)) {
                 let at = contact - section.contacts.start;
                 let Some(mut state) = term.law.state(&term.columns, at) else { continue };
-                let least = if state.acts_across() { f64::NEG_INFINITY } else { 0.0 };
-                state.begin(overlap_m(contact).max(least));
-                let (start_m, stage_m) = ([0.0; 4], [0.0; 4]);
-                contacts.push(StatefulContact { contact, start_m, stage_m, state });
+                let seen = closed(&*state, at_start(contact));
+                state.begin(seen.overlap);
+                // What acts across a gap may do more at once than at rest.
+                let across = state.acts_across();
+                let start_m = if across { state.accept([0.0; 4], seen).0 } else { [0.0; 4] };
+                contacts.push(StatefulContact { contact, start_m, stage_m: start_m, state });
             }
         }
         Self { rates_m_s: vec![vec![[0.0; 4]; contacts.len()]; stages], contacts }

@@ -318,6 +318,11 @@ impl Piece<'_> {
     /// than from a slope of the dense output, which would lose an order.
     fn acceleration(&self, body: usize, theta: f64) -> f64 {
         let (system, last) = (self.system, self.system.bodies() - 1);
+        if body == 0
+            && let Some(motion) = &system.motion
+        {
+            return motion.acceleration_m_s2(self.time_s(theta), self.time_s(0.5));
+        }
         if system.periodic && body == last {
             return self.acceleration(1, theta);
         }

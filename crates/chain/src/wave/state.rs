@@ -47,7 +47,9 @@ impl WaveState {
             states: ContactStates::default(),
             bridged: system.bridged.clone(),
         };
-        state.states = ContactStates::new(system, stages, |c| state.overlap(system, c));
+        state.states = ContactStates::new(system, stages, |c| {
+            (state.overlap(system, c), state.v[c] - state.v[c + 1])
+        });
         for contact in 0..contacts {
             let overlap = state.overlap(system, contact);
             state.largest[contact] = overlap.max(system.offset_m[contact]).max(0.0);

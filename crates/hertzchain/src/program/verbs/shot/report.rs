@@ -79,6 +79,9 @@ fn flight(style: Style, shot: &Shot) -> Rows {
 /// Why there is no reflected time of flight.
 fn no_return(brief: Style, shot: &Shot) -> String {
     let searched_s = (shot.passage.as_ref()).map_or(0.0, |seen| seen.search_ends_s);
+    if shot.passage.as_ref().is_ok_and(|seen| seen.reflected.is_some()) {
+        return "none by this pick: the pulses overlap".to_owned();
+    }
     match shot.duration_s < searched_s {
         true => "not waited for".to_owned(),
         false => format!("no pulse came back until {}", brief.quantity(searched_s, "s")),
