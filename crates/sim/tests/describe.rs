@@ -4,7 +4,7 @@
 use hertzchain_chain::{Chain, System};
 use hertzchain_experiment::{Experiment, examples, film_presets, preset, presets};
 use hertzchain_sim::{Group, Plan, Value, describe, describe_theory, shoot};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 fn described(experiment: &Experiment) -> Vec<Group> {
     let (chain, _) = experiment.chain(None).unwrap();
@@ -401,4 +401,24 @@ fn threads_add_their_swing_to_the_modes() {
     let free = of("");
     let expected = number(&free, title, "mode 2").hypot(swing);
     assert_close(number(&hung, title, "mode 2"), expected, 1e-12);
+}
+
+#[test]
+fn small_waves_see_how_a_yielded_contact_unloads() {
+    let text = "materials.steel = { young_modulus = \"213 GPa\", poisson_ratio = 0.3, density = \"7960 kg/m^3\" }\n\
+         beads = [{ count = 1, radius = \"6.35 mm\", material = \"steel\" }]\n\
+         contacts = [{ laws = [{ law = \"elastic_plastic_thornton\", yield_pressure = \"1 GPa\" }] }]\n\
+         near_end = { push = \"constant\", force = \"30 N\" }\n";
+    let (_, system, _) =
+        Experiment::from_text("row.toml", text).unwrap().chain_and_system(None).unwrap();
+    // Thornton's unloading, F = (4/3) E* √R_p (δ − δ_p)^{3/2}, has the slope 2E* √(R_p (δ − δ_p)).
+    let (modulus, radius) = (0.5 * 213e9_f64 / (1.0 - 0.09), 3.175e-3_f64);
+    let (pressure, force) = (1e9_f64, 30.0_f64);
+    let yield_overlap = radius * (PI * pressure / (2.0 * modulus)).powi(2);
+    let yield_force = 4.0 / 3.0 * modulus * radius.sqrt() * yield_overlap.powf(1.5);
+    let flatter = 4.0 * modulus / (3.0 * force)
+        * ((2.0 * force + yield_force) / (2.0 * PI * pressure)).powf(1.5);
+    let slope = 2.0 * modulus * (0.75 * force * flatter / modulus).cbrt();
+    // A difference of 1e-5 of the overlap.
+    assert!((system.static_contact(1).stiffness_n_m / slope - 1.0).abs() < 1e-6, "{slope}");
 }

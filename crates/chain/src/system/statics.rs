@@ -28,17 +28,23 @@ impl System {
 }
 
 /// Slope of the elastic force by a central difference whose step balances
-/// rounding (1e-16) and curvature: right to about 1e-10.
+/// rounding (1e-16) and curvature: right to about 1e-10. Where the load has yielded a contact, small
+/// waves see how it unloads.
 fn stiffness(system: &System, contact: usize, overlap: f64) -> f64 {
     let step = 1e-5 * overlap;
-    let rise = elastic_force(system, contact, overlap + step)
-        - elastic_force(system, contact, overlap - step);
-    rise / (2.0 * step)
+    let force = |at: f64| force_at_rest(system, contact, at, overlap);
+    (force(overlap + step) - force(overlap - step)) / (2.0 * step)
 }
 
 /// Force at rest of one contact in N: what all its terms give at zero rate, and its bridge.
 pub(super) fn elastic_force(system: &System, contact: usize, overlap: f64) -> f64 {
-    let force = system.unclipped_force(contact, Closed::new(overlap.max(0.0), 0.0));
+    force_at_rest(system, contact, overlap, overlap)
+}
+
+/// The same at an overlap in m after a largest one.
+fn force_at_rest(system: &System, contact: usize, overlap: f64, largest: f64) -> f64 {
+    let closed = Closed { largest: largest.max(0.0), ..Closed::new(overlap.max(0.0), 0.0) };
+    let force = system.unclipped_force(contact, closed);
     match system.bridged.is_empty() {
         true => force,
         false => force + system.pull_at_rest_n(contact, overlap),
