@@ -408,7 +408,8 @@ fn small_waves_see_how_a_yielded_contact_unloads() {
     let text = "materials.steel = { young_modulus = \"213 GPa\", poisson_ratio = 0.3, density = \"7960 kg/m^3\" }\n\
          beads = [{ count = 1, radius = \"6.35 mm\", material = \"steel\" }]\n\
          contacts = [{ laws = [{ law = \"elastic_plastic_thornton\", yield_pressure = \"1 GPa\" }] }]\n\
-         near_end = { push = \"constant\", force = \"30 N\" }\n";
+         near_end = { push = \"constant\", force = \"30 N\" }\n\
+         initial = [{ bead = 1, velocity = \"1 mm/s\" }]\n";
     let (_, system, _) =
         Experiment::from_text("row.toml", text).unwrap().chain_and_system(None).unwrap();
     // Thornton's unloading, F = (4/3) E* √R_p (δ − δ_p)^{3/2}, has the slope 2E* √(R_p (δ − δ_p)).
