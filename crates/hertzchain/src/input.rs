@@ -45,6 +45,12 @@ pub(crate) fn assumed_preset(what: &str, chain: &str, preset: &str, options: &st
     )
 }
 
+/// Whether a path can be of an experiment file. A folder is none, and may be called as a preset whose
+/// results it has.
+pub(crate) fn is_file(path: &Path) -> bool {
+    path.exists() && !path.is_dir()
+}
+
 fn open_file(file: &Path) -> Result<Experiment, Failure> {
     if file == Path::new("-") {
         let read = text(file).map_err(|error| format!("standard input can't be read: {error}"));
@@ -54,9 +60,7 @@ fn open_file(file: &Path) -> Result<Experiment, Failure> {
     Experiment::open(file).map_err(|error| match error {
         OpenError::Mistakes(mistakes) => mistakes.into(),
         OpenError::Unreadable { .. } => {
-            let meant = file
-                .to_str()
-                .filter(|name| (file.is_dir() || !file.exists()) && preset(name).is_ok());
+            let meant = file.to_str().filter(|name| !is_file(file) && preset(name).is_ok());
             let hint =
                 meant.map_or(String::new(), |name| format!("; did you mean --preset {name}?"));
             Failure::User(format!("{error}{hint}"))

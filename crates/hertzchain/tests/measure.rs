@@ -296,6 +296,21 @@ fn three_channels_of_a_shot_are_one_too_many() {
 }
 
 #[test]
+fn force_removes_what_the_earlier_run_had_and_nothing_of_others() {
+    let folder = folder("force");
+    write(&folder.join("shot.csv"), &volts(0.5, 1.0));
+    let out = folder.join("out");
+    fs::create_dir_all(&out).unwrap();
+    let run = || measure(&folder, &["shot.csv", "--out", "out", "--force"]).status.code();
+    // A table of another verb's: no measurement was here before.
+    fs::write(out.join("ratios.csv"), "of others").unwrap();
+    assert_eq!(run(), Some(0));
+    assert!(out.join("ratios.csv").exists() && out.join("measured.json").exists());
+    assert_eq!(run(), Some(0));
+    assert!(!out.join("ratios.csv").exists() && out.join("signals.svg").exists());
+}
+
+#[test]
 fn options_that_would_have_no_effect_are_refused() {
     let folder = folder("idle");
     let cases: [(&[&str], &str); 3] = [

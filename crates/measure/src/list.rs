@@ -141,9 +141,8 @@ impl ShotList {
 
     /// A line on the columns that are not read, if there are any.
     fn unread(&self) -> Vec<String> {
-        let names = |titles: &[String]| titles.join(", ");
         let more = if self.unread.len() > SHOWN { ", …" } else { "" };
-        let shown = names(self.unread.get(..SHOWN).unwrap_or(&self.unread));
+        let shown = self.unread.get(..SHOWN).unwrap_or(&self.unread).join(", ");
         let line = format!("columns that are not read: {shown}{more}; these are: {COLUMNS}");
         Vec::from_iter((!self.unread.is_empty()).then_some(line))
     }

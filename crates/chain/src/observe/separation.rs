@@ -2,7 +2,7 @@
 
 use crate::wave::{Flow, Observer, Piece, bracketed_root};
 
-/// Share of a step before whose end a contact has opened within it.
+/// A contact that has opened by more than it does in this share of a step did so within the step.
 const WITHIN: f64 = 1e-3;
 
 /// Notes when body 0 first separates from bead 1.
@@ -30,11 +30,11 @@ impl Observer for Separation {
                 self.first = Some((piece.start_s(), piece.body(0, 0.0).1));
             }
             self.pressed |= !piece.is_open(0);
-            let opened = self.pressed && piece.overlap(0, 1.0).0 < 0.0;
+            let (overlap, rate) = piece.overlap(0, 1.0);
+            let opened = self.pressed && overlap < 0.0;
             let at = |theta: f64| (piece.time_s(theta), piece.body(0, theta).1);
             self.at_end = opened.then(|| at(1.0));
             // Where a force has ended before the contact opens, a step need not end at the opening.
-            let (overlap, rate) = piece.overlap(0, 1.0);
             let passed = piece.has_given_length() || overlap < WITHIN * rate * piece.step_s();
             let within = opened && passed && piece.overlap(0, 0.0).0 > 0.0;
             let root = || bracketed_root(|theta| -piece.overlap(0, theta).0, 0.0, 1.0, 1e-9);

@@ -105,7 +105,7 @@ impl Pass {
         let offset = &system.offset_m[contacts.clone()];
         let (left, right) = (&x[first..end], &x[first + 1..=end]);
         let (before, after) = (&v[first..end], &v[first + 1..=end]);
-        let gap = &mut self.signed_overlap[contacts.clone()][..n];
+        let signed = &mut self.signed_overlap[contacts.clone()][..n];
         let overlap = &mut self.overlap[contacts.clone()][..n];
         let root = &mut self.root[contacts.clone()][..n];
         let rate = &mut self.rate[contacts][..n];
@@ -116,14 +116,14 @@ impl Pass {
             let depth = load(offset) - (load(right) - load(left));
             let deep = depth.simd_gt(f64x4::splat(simd, FLUSH));
             let overlapped = deep.select(depth, f64x4::splat(simd, 0.0));
-            depth.store_slice(&mut gap[here.clone()]);
+            depth.store_slice(&mut signed[here.clone()]);
             overlapped.store_slice(&mut overlap[here.clone()]);
             overlapped.sqrt().store_slice(&mut root[here.clone()]);
             (load(before) - load(after)).store_slice(&mut rate[here.clone()]);
         }
         for c in whole..n {
             let depth = offset[c] - (right[c] - left[c]);
-            gap[c] = depth;
+            signed[c] = depth;
             overlap[c] = if depth > FLUSH { depth } else { 0.0 };
             root[c] = overlap[c].sqrt();
             rate[c] = before[c] - after[c];
@@ -150,7 +150,8 @@ impl Pass {
     /// across a gap or open at an overlap.
     pub(super) fn disagrees(&self, contacts: Range<usize>) -> bool {
         let gates = self.signed_overlap[contacts.clone()].iter().zip(&self.touching[contacts]);
-        let wrong = gates.map(|(gap, touching)| u32::from(gap * (2.0 * touching - 1.0) < 0.0));
+        let wrong =
+            gates.map(|(overlap, touching)| u32::from(overlap * (2.0 * touching - 1.0) < 0.0));
         wrong.sum::<u32>() > 0
     }
 

@@ -222,17 +222,19 @@ const OF_PAPER: [(&str, Look); 4] = [
 /// Returns the colour and marker of a case among those of a figure: the paper's for the first that is
 /// called as one of its liquids, another for each further one.
 pub fn case_look(case: &str, among: &[&str]) -> Look {
-    let first = |name: &str| name.split(|c: char| !c.is_alphanumeric()).next().map(str::to_owned);
-    let own = |name: &str| OF_PAPER.iter().find(|of| first(name).as_deref() == Some(of.0));
+    let own = |name: &str| {
+        let first = name.split(|c: char| !c.is_alphanumeric()).next();
+        OF_PAPER.iter().find(|of| first == Some(of.0))
+    };
     let is_first = |at: usize| {
         let mut before = among[..at].iter();
         own(among[at]).is_some_and(|of| before.all(|name| own(name) != Some(of)))
     };
     let at = among.iter().position(|name| *name == case);
-    match (at, own(case)) {
-        (Some(at), Some((_, look))) if is_first(at) => return *look,
-        (None, Some((_, look))) => return *look,
-        _ => {}
+    if let Some((_, look)) = own(case)
+        && at.is_none_or(is_first)
+    {
+        return *look;
     }
     let before = (0..at.unwrap_or(among.len())).filter(|at| !is_first(*at)).count();
     // The palette has the four of above first.

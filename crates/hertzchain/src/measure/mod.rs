@@ -276,7 +276,7 @@ pub fn rig(arguments: &Arguments) -> Result<Option<Experiment>, Failure> {
 }
 
 fn open_rig(file: &Path) -> Result<Experiment, Failure> {
-    let preset = file.to_str().filter(|_| file.is_dir() || !file.exists());
+    let preset = file.to_str().filter(|_| !input::is_file(file));
     let preset = preset.filter(|name| hertzchain_experiment::preset(name).is_ok());
     input::open(&Input {
         file: preset.is_none().then(|| file.to_owned()),

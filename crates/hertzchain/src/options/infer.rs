@@ -451,8 +451,7 @@ names! {
 impl ModelOptions {
     /// The same of another model, a file or a preset.
     pub(crate) fn of_other(&self, model: &str) -> Self {
-        // A folder is none of either, and may be called as a preset whose results it has.
-        let file = Some(PathBuf::from(model)).filter(|file| file.exists() && !file.is_dir());
+        let file = Some(PathBuf::from(model)).filter(|file| crate::input::is_file(file));
         let preset = file.is_none().then(|| model.to_owned());
         Self { preset, model: file, ..self.clone() }
     }

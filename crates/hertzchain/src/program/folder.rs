@@ -18,7 +18,9 @@ pub(crate) struct Folder {
     free: Vec<String>,
     /// Whether files of earlier runs may be replaced.
     replace: bool,
-    /// Files that not every run has: those of an earlier run go when this one's come.
+    /// Whether the folder has results of the same verb, which this run replaces.
+    has_earlier: bool,
+    /// Files that not every run has: those of the earlier run go when this one's come.
     optional: &'static [&'static str],
 }
 
@@ -35,10 +37,12 @@ impl Folder {
         }
         let refused =
             |error| Failure::User(format!("cannot write into {}: {error}", path.display()));
+        let has_earlier = names.iter().any(|name| path.join(name).exists());
         let free = |name: &&str| require_free(&path.join(name), "--out", replace);
         names.iter().try_for_each(free)?;
         let free = names.iter().map(|&name| name.to_owned()).collect();
-        Ok(Self { files: Files::within(path).map_err(refused)?, free, replace, optional: &[] })
+        let files = Files::within(path).map_err(refused)?;
+        Ok(Self { files, free, replace, has_earlier, optional: &[] })
     }
 
     /// The same of a verb that writes these files, or pictures without an ending, in some runs only.
@@ -114,7 +118,8 @@ impl Folder {
 
     /// Gives all files their names; returns them, one path a line.
     pub(crate) fn finish(self) -> Result<String, Failure> {
-        let old = if self.replace { self.old_files() } else { Vec::new() };
+        let replaces = self.replace && self.has_earlier;
+        let old = if replaces { self.old_files() } else { Vec::new() };
         let files = self.files.finish();
         let files = files.map_err(|error| Failure::Ours(format!("cannot name a file: {error}")))?;
         for old in old {

@@ -87,7 +87,7 @@ def time_scale(dimensionless: bool) -> tuple[float, str]:
 
 def colour_of(at: int, name: str = "") -> str:
     """The program's colour of a case, else the style's: "C0" would be whichever is the first when the figure is saved."""
-    return OF_CASES.get(name.split(" ")[0], to_hex(f"C{at % 7}"))
+    return OF_CASES.get(name.replace("-", " ").split(" ")[0], to_hex(f"C{at % 7}"))
 
 
 @styled

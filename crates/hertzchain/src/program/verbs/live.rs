@@ -127,7 +127,7 @@ impl Source {
         let folder = out.join("records");
         fs::create_dir_all(&folder)
             .map_err(|error| wrong(&format!("cannot write into {}: {error}", folder.display())))?;
-        same_format(&folder, &[rate.0.to_string(), arguments.channels.to_string()])?;
+        same_format(&folder, rate.0, arguments.channels)?;
         let level =
             Level { volts: volts.0, samples: reading.shot_samples.map(|samples| samples.0) };
         let format = StreamFormat {
@@ -175,7 +175,7 @@ const STREAM: &str = ".stream";
 
 /// Refuses a folder with shots of a stream of another rate or number of channels; notes those of a
 /// new one.
-fn same_format(folder: &Path, [rate, channels]: &[String; 2]) -> Result<(), Failure> {
+fn same_format(folder: &Path, rate: f64, channels: u8) -> Result<(), Failure> {
     let path = folder.join(STREAM);
     let now = format!("--rate {rate} --channels {channels}");
     match fs::read_to_string(&path) {
