@@ -139,6 +139,9 @@ impl Liquid {
             }
             [true, false] => ("the viscosity at 100 °C is missing", both[0]),
             [false, true] => ("the viscosity at 40 °C is missing", both[1]),
+            [false, false] if table.has("kinematic_viscosity") && table.has("temperature") => {
+                ("one viscosity does not say what it is at this temperature", "temperature")
+            }
             _ => return Ok(Some(liquid)),
         };
         let label = "expected `kinematic_viscosity` alone, or the larger at 40 °C and the smaller at 100 °C";

@@ -84,10 +84,23 @@ fn viscosities_that_do_not_go_together_are_mistakes_at_their_place() {
     has(changed("kinematic_viscosity_100 =", "# "), "the viscosity at 100 °C is missing");
     has(changed("\"7.7 cSt\"", "\"77 cSt\""), "not thinner at 100 °C");
     has(changed("[liquid]\n", "[liquid]\nkinematic_viscosity = \"9 cSt\"\n"), "has no temperature");
+    let one = text.replacen("kinematic_viscosity_100 =", "# ", 1);
+    let one = only(&one.replacen("kinematic_viscosity_40 =", "kinematic_viscosity =", 1));
+    has(one.one_line(), "one viscosity does not say what it is at this temperature");
     has(changed("\"7.7 cSt\"", "\"0.7 cSt\""), "must be from 2 cSt to 2e7 cSt");
     has(changed("\"25 degC\"", "\"25\""), "`temperature` has no unit");
     has(changed("\"25 degC\"", "\"25 K\""), "must be from -50 degC to 200 degC");
     has(changed("\"25 degC\"", "\"25 s\""), "expected a temperature in K, such as \"25 degC\"");
+}
+
+#[test]
+fn a_film_with_a_viscosity_of_its_own_takes_nothing_of_the_oil() {
+    let own = "{ law = \"film_entrained\", viscosity = \"0.1 Pa s\" }";
+    let text = film_presets()[0].text.replacen("\"film_entrained\"", own, 1);
+    let row = Experiment::from_text("own.toml", &text).unwrap();
+    let mut laws = row.sections().iter().flat_map(|section| section.laws.clone());
+    let film = laws.find(|law| law.name() == "film_entrained").unwrap();
+    assert_eq!(film.given, [("viscosity", 0.1)]);
 }
 
 /// A film and a bridge of a liquid with these keys.

@@ -1,6 +1,7 @@
 //! Goodness of fit: chi-square, runs of equal sign, the largest residual.
 
 use crate::identify::directions_at;
+use crate::least_squares::DOUBTFUL;
 use crate::{Fit, Loss, Problem};
 use hertzchain_measure::signal::ChiSquare;
 use std::ops::Range;
@@ -86,7 +87,10 @@ impl Goodness {
             chi_square,
             // As many numbers as parameters are met, but for rounding: its signs mean nothing.
             runs: chi_square.and_then(|_| runs(&fit.residuals)),
-            largest: largest_residual(problem, fit, 0..fit.residuals.len()),
+            // Where a curve jumps, derivatives do not say what follows a number.
+            largest: largest_residual(problem, fit, 0..fit.residuals.len()).filter(|_| {
+                fit.ending.converged() || fit.jacobian.worst_disagreement() <= DOUBTFUL
+            }),
         }
     }
 

@@ -201,14 +201,10 @@ fn gather(
 }
 
 fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<Done>> {
-    let searched =
-        !matches!(options.cutting, Cut::Level(_)) && options.reading.parts == Parts::Whole;
+    let cuts = options.cutting == Cut::Plain && options.reading.parts == Parts::Whole;
     let one = |record: &Record| {
-        let found = match searched {
-            true => content(&record.channels),
-            false => Content::One,
-        };
-        if let (Cut::Plain, Content::Plain(ranges)) = (options.cutting, &found) {
+        let found = content(&record.channels);
+        if let (true, Content::Plain(ranges)) = (cuts, &found) {
             let part = |&(from, to): &(usize, usize)| {
                 let part = record.part(from, to - from);
                 (Shot::measure(&part, options), Some((from, to)))

@@ -3,7 +3,8 @@
 use crate::records::Channel;
 use crate::signal::median;
 
-/// Samples of a block, of which one in a few is compared: pulses are some ten samples wide.
+/// Samples of a block, of which one in a few is compared, with the next: pulses are some ten samples wide,
+/// spikes one.
 const BLOCK: usize = 32;
 const EVERY: usize = 4;
 /// Share of a channel's largest swing from which on something is a pulse; and that the largest
@@ -64,9 +65,10 @@ fn shares_of(volts: &[f64]) -> Vec<f64> {
     let stride = volts.len().div_ceil(4096).max(1);
     let some: Vec<f64> = volts.iter().copied().step_by(stride).collect();
     let middle = median(&some).unwrap_or(0.0);
+    let off = |volt: f64| (volt - middle).abs();
     let swing = |block: &[f64]| {
-        let off = block.iter().step_by(EVERY).map(|volt| (volt - middle).abs());
-        off.fold(0.0, f64::max)
+        let pairs = block.windows(2).step_by(EVERY);
+        pairs.map(|pair| off(pair[0]).min(off(pair[1]))).fold(0.0, f64::max)
     };
     let swings: Vec<f64> = volts.chunks(BLOCK).map(swing).collect();
     let largest = swings.iter().copied().fold(0.0, f64::max);

@@ -213,7 +213,8 @@ impl Shot {
             remarks.push("excluded by the list of shots".to_owned());
         }
         if self.holds_several {
-            let remark = "several shots: cut the recording with --level or --shot-samples";
+            let remark =
+                "several shots: cut the recording with --level, shorter with --shot-samples";
             remarks.push(remark.to_owned());
         }
         if self.untriggered {

@@ -81,7 +81,8 @@ impl Meter {
                         powers[*slot] += term_power(section, term, gated, pass, part.clone());
                     }
                 }
-                if let Some(slot) = slots.get(section.terms().count()).copied().flatten() {
+                let of_bridges = slots.get(section.terms().count()).copied().flatten();
+                if let Some(slot) = of_bridges.filter(|_| !part.is_empty()) {
                     powers[slot] += pull_power(pass, part);
                 }
             }

@@ -37,7 +37,7 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
         })).collect::<Value>(),
         "failed": verdict.failed.iter().map(|(oil, why)| json!({ "name": oil, "why": why })).collect::<Value>(),
         "verdict": run_gauge.sentence(),
-        "doubts": gauge.doubts(verdict),
+        "doubts": run_gauge.doubts(),
     });
     // A film's numbers are fitted, not scanned.
     if run_gauge.film.is_none() {
@@ -47,6 +47,14 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
 }
 
 impl GaugeResult {
+    /// Warnings on the verdict or on the film's numbers.
+    pub(crate) fn doubts(&self) -> Option<String> {
+        let film = self.film.as_ref();
+        let film = film.and_then(|(problem, fit, _)| self.gauge.film_doubts((problem, fit)));
+        let all = self.gauge.doubts(&self.verdict).into_iter().chain(film);
+        all.reduce(|doubts, more| format!("{doubts} {more}"))
+    }
+
     /// The verdict on the oils, or on a film, in a sentence.
     pub(crate) fn sentence(&self) -> String {
         let Some((_, _, chi_square)) = &self.film else {

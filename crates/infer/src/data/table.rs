@@ -220,9 +220,18 @@ impl Columns {
     }
 }
 
-/// Refuses a column that stands twice, and one of a wanted observable in another unit or name, which
-/// would be left out without a word.
+/// Column of `measure`'s table of single shots alone.
+const OF_SHOTS: &str = "not_counted_because";
+
+/// Refuses a table of single shots, a column that stands twice, and one of a wanted observable in another
+/// unit or name, which would be left out without a word.
 fn unclear(titles: &[String], wanted: &[Observable], file: &str) -> Result<(), InferError> {
+    if titles.iter().any(|title| title == OF_SHOTS) {
+        return InferError::input(format!(
+            "{file} has single shots, also those that do not count, and not the errors that they share; \
+             fit their means: `speeds.csv` of the same folder, in Python what `measure` returned"
+        ));
+    }
     let read = wanted.iter().map(|of| of.column());
     for column in read.chain(AT_MEAN_SPEED).chain(["speed_m_s"]) {
         if titles.iter().filter(|title| *title == column).count() > 1 {

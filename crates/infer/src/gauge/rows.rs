@@ -5,9 +5,9 @@ use super::branches::{Chosen, ENOUGH, Row, smoothest};
 use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::Data;
 use crate::goodness::LEAST_BY_CHANCE;
-use crate::least_squares::{Descent, Merit, run};
+use crate::least_squares::{DOUBTFUL, Descent, Merit, run};
 use crate::linear::{cholesky, dot, forward, least_squares};
-use crate::{Covariance, DataRow, Fitting, InferError, Loss, Parameter, Problem, fit};
+use crate::{Covariance, DataRow, Fit, Fitting, InferError, Loss, Parameter, Problem, fit};
 use hertzchain_measure::signal::ChiSquare;
 use rayon::prelude::*;
 
@@ -327,6 +327,9 @@ impl Gauge {
         // standard error.
         let how = Fitting { iterations: 30, tolerance: 1e-6, ..Fitting::default() };
         let fit_result = fit(&problem, &how)?;
+        if let (true, Some(jump)) = (free != Free::Both, jump(problem.parameters(), &fit_result)) {
+            return Err(InferError::NotConverged(format!("not determined: {jump}")));
+        }
         let point = [fit_result.point[0], fit_result.point.get(1).copied().unwrap_or(start[1])];
         let columns = fit_result.jacobian.columns.iter().zip(point);
         let slopes: Vec<Vec<f64>> =
@@ -360,6 +363,12 @@ impl Gauge {
                 covariance: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
             },
         })
+    }
+
+    /// That the film's fit ended where derivatives mean nothing, if it did.
+    pub fn film_doubts(&self, (problem, fit): (&CurveProblem, &Fit)) -> Option<String> {
+        let of_film = jump(problem.parameters(), fit)?;
+        Some(format!("Of the film's numbers over all speeds: {of_film}."))
     }
 
     /// A statement on rows with more than one solution.
@@ -405,6 +414,19 @@ const NOT_WORSE: f64 = 9.0;
 const SAME: f64 = 0.02;
 /// Changes of ln K and ln A that count as small: of more, residuals are no straight lines.
 const SMALL: f64 = 0.05;
+
+/// That a model's curve jumps where a fit has ended, as where two maxima are equally high, so that
+/// derivatives by two step sizes differ and no error can be stated.
+fn jump(parameters: &[Parameter], fit: &Fit) -> Option<String> {
+    let (at, share) = fit.jacobian.least_agreeing().filter(|least| least.1 > DOUBTFUL)?;
+    let Parameter { name, unit, .. } = &parameters[at];
+    Some(format!(
+        "the model's curve jumps near {name} = {:.3e} {unit} (its derivatives differ by {:.0} %); try a smaller \
+         --accuracy, or --use incident",
+        fit.point[at],
+        100.0 * share
+    ))
+}
 
 /// Of what starts came to, the smallest A first, each solution once that `values` numbers do not
 /// reject.

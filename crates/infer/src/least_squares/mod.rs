@@ -358,7 +358,7 @@ fn binding(parameters: &[Parameter], point: &[f64], gradient: &[f64]) -> Vec<Bin
 }
 
 /// Disagreement of derivatives by two step sizes from which they do not locate a minimum.
-const DOUBTFUL: f64 = 0.1;
+pub(crate) const DOUBTFUL: f64 = 0.1;
 
 /// Why a descent ended, given derivatives by two step sizes: one that came to no rest has converged
 /// if all that χ² is still to fall lies along unidentifiable directions. There a descent's own

@@ -8,6 +8,7 @@ use crate::records::options::{
 use crate::records::read::{Raw, or_error};
 use crate::records::record::Record;
 use crate::records::stored::Head;
+use crate::records::text::seconds;
 use indexmap::IndexMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -151,6 +152,11 @@ pub(crate) trait Arrays {
 
     fn records(&self, name: &str, interval_s: f64, options: &ReadOptions) -> Result<Raw>;
 
+    /// The unit that an array states beside its name.
+    fn unit(&self, _name: &str) -> Option<String> {
+        None
+    }
+
     /// Intervals that attributes state: as such, and by a rate.
     fn stated_s(&self) -> [Option<f64>; 2] {
         [None; 2]
@@ -189,11 +195,12 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
         .or(by_interval_s)
         .or(by_rate_s)
         .or(step(times_s));
+    let unit_s = of(TIMES).and_then(|name| seconds(&arrays.unit(name)?));
     let mut note = match (stated_s, of(TIMES)) {
-        (None, Some(name)) => seconds_assumed(name, None, options),
+        (None, Some(name)) => seconds_assumed(name, unit_s, options),
         _ => both.map(|(rate, interval)| other_interval(rate, interval)),
     };
-    let unit_s = options.time_unit_s.unwrap_or(1.0);
+    let unit_s = unit_s.or(options.time_unit_s).unwrap_or(1.0);
     let mut interval = stated_s.or(step(times).map(|step| step * unit_s));
     let all_speeds = names.iter().filter(|name| is(SPEEDS, name)).map(|name| arrays.values(name));
     let speeds = all_speeds.collect::<Result<Vec<_>, _>>()?.concat();

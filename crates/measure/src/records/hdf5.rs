@@ -232,6 +232,13 @@ impl Arrays for Datasets {
         }))
     }
 
+    fn unit(&self, name: &str) -> Option<String> {
+        let dataset = self.dataset(name).ok()?;
+        let mut names = dataset.attr_names().unwrap_or_default().into_iter();
+        let name = names.find(|name| ["unit", "units"].contains(&&*name.to_lowercase()))?;
+        dataset.attr(&name).ok()?.read_string().ok()
+    }
+
     fn stated_s(&self) -> [Option<f64>; 2] {
         let number = |names: &[&str]| {
             let datasets = self.names.keys().filter_map(|name| self.dataset(name).ok());

@@ -15,6 +15,8 @@ pub struct Baseline {
     pub correlation: f64,
     /// Number of samples of the quiet stretch; 0 if there was none.
     pub quiet_samples: usize,
+    /// Standard deviation of the offset where there was no such stretch, in the samples' unit; else 0.
+    pub offset_sigma: f64,
 }
 
 impl Baseline {
@@ -52,6 +54,7 @@ pub fn baseline(quiet: &[f64]) -> Result<Baseline> {
         noise,
         correlation: correlation(&clipped.collect::<Vec<_>>()),
         quiet_samples: quiet.len(),
+        offset_sigma: 0.0,
     })
 }
 

@@ -45,6 +45,13 @@ fn one_shot_is_one_whatever_follows_it() {
 }
 
 #[test]
+fn spikes_of_one_sample_are_no_shot() {
+    let mut volts = recording(&[(1000, 1.0)], 60_000);
+    (0..8).for_each(|number| volts[40_000 + 700 * number] = 1.5);
+    assert_eq!(content(&channels([volts])), Content::One);
+}
+
+#[test]
 fn the_walls_channel_counts_too() {
     let bell = |at: usize, i: usize| (-((i as f64 - at as f64) / 25.0).powi(2)).exp();
     let channel = |first: usize| -> Vec<f64> {

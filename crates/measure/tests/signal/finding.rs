@@ -163,6 +163,10 @@ fn a_coarse_digitiser_does_not_look_saturated() {
     // 200 steps to the top of the wall's pulse.
     let samples: Vec<f64> = Scene::default().summed().iter().map(|x| (x * 125.0).round()).collect();
     assert_eq!(find(&samples).flags, []);
+    // 48 steps, as eight bits give a wall's pulse of three eighths of the range.
+    let samples: Vec<f64> = Scene::default().summed().iter().map(|x| (x * 30.0).round()).collect();
+    let flags = find(&samples).flags;
+    assert!(!flags.iter().any(|flag| matches!(flag, QualityFlag::Saturation(_))), "{flags:?}");
 }
 
 #[test]

@@ -107,7 +107,7 @@ fn oils(run_gauge: &GaugeResult) -> String {
 fn doubts(run_gauge: &GaugeResult) -> String {
     let dry = misfit(&run_gauge.gauge.dry_goodness())
         .map(|reported| format!("of the dry curve, on which all below rests, {reported}."));
-    let all = dry.into_iter().chain(run_gauge.gauge.doubts(&run_gauge.verdict));
+    let all = dry.into_iter().chain(run_gauge.doubts());
     let lines: String = all.map(|doubt| format!("warning: {doubt}\n")).collect();
     match lines.is_empty() {
         true => lines,

@@ -9,11 +9,11 @@ use crate::options::{
 };
 use crate::program::{Failure, Folder, failure, format, print};
 use crate::{design, inference, sweep};
-use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy, write_whole};
+use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy};
 use hertzchain_measure::{Case, Level, MeasureError, Shot, SpeedRow, shots_at_level};
 use serde_json::{Value, json};
-use std::fs;
-use std::io::{self, Read};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Read, Seek, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -55,6 +55,9 @@ pub(crate) fn run(arguments: &LiveOptions) -> Result<(), Failure> {
             break;
         }
         sleep(LOOK);
+    }
+    if recording.as_ref().is_some_and(JoinHandle::is_finished) {
+        print::note("the stream has ended");
     }
     ended_well(recording)?;
     proposals.map_or(Ok(()), Proposals::finish)?;
@@ -127,7 +130,10 @@ impl Source {
         let folder = out.join("records");
         fs::create_dir_all(&folder)
             .map_err(|error| wrong(&format!("cannot write into {}: {error}", folder.display())))?;
-        same_format(&folder, rate.0, arguments.channels)?;
+        let samples = format!("{:?}", arguments.samples).to_lowercase();
+        let stated =
+            format!("--rate {} --channels {} --samples {samples}", rate.0, arguments.channels);
+        let claimed = claim(&folder, &stated)?;
         let level =
             Level { volts: volts.0, samples: reading.shot_samples.map(|samples| samples.0) };
         let format = StreamFormat {
@@ -138,6 +144,7 @@ impl Source {
         let pieces = stream_pieces(name, reader, format);
         let into = folder.clone();
         let recording = thread::spawn(move || {
+            let _claimed = claimed;
             let next = stored(&into) + 1;
             for (shot, number) in shots_at_level(pieces, level).zip(next..) {
                 let file = into.join(format!("shot-{number:06}.npy"));
@@ -170,22 +177,39 @@ fn ended_well(recording: Option<JoinHandle<Result<(), MeasureError>>>) -> Result
     ended.map_err(broken)?.map_err(|error| wrong(&error.to_string()))
 }
 
-/// Rate and channels of the stored shots, which their files do not state.
+/// Rate, channels and samples of the stored shots, which their files do not state; locked while a stream
+/// comes in.
 const STREAM: &str = ".stream";
 
-/// Refuses a folder with shots of a stream of another rate or number of channels; notes those of a
-/// new one.
-fn same_format(folder: &Path, rate: f64, channels: u8) -> Result<(), Failure> {
+/// Refuses a folder with shots of a stream of another format, or of one that another program stores;
+/// notes the format of a new one. The folder is free again when the file is dropped.
+fn claim(folder: &Path, format: &str) -> Result<File, Failure> {
     let path = folder.join(STREAM);
-    let now = format!("--rate {rate} --channels {channels}");
-    match fs::read_to_string(&path) {
-        Ok(before) if stored(folder) > 0 && before != now => Err(wrong(&format!(
-            "{} has shots of a stream with {before}, not {now}; name another folder by --out",
-            folder.display()
-        ))),
-        _ => write_whole(&path, |out| out.write_all(now.as_bytes()))
-            .map_err(|error| wrong(&format!("cannot write {}: {error}", path.display()))),
+    let failed = |error| wrong(&format!("cannot write {}: {error}", path.display()));
+    let mut open = File::options();
+    let open = open.create(true).truncate(false).read(true).write(true).open(&path);
+    let mut file = open.map_err(failed)?;
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => {
+            return Err(wrong(&format!(
+                "another program is storing a stream in {}; name another folder by --out",
+                folder.display()
+            )));
+        }
+        // A file system without locks is used without.
+        Ok(()) | Err(TryLockError::Error(_)) => {}
     }
+    let mut before = String::new();
+    file.read_to_string(&mut before).map_err(failed)?;
+    if stored(folder) > 0 && before != format {
+        return Err(wrong(&format!(
+            "{} has shots of a stream with {before}, not {format}; name another folder by --out",
+            folder.display()
+        )));
+    }
+    file.set_len(0).and_then(|()| file.rewind()).map_err(failed)?;
+    file.write_all(format.as_bytes()).map_err(failed)?;
+    Ok(file)
 }
 
 /// Largest number of a stored shot; 0 for none.

@@ -5,7 +5,7 @@ fn titles(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn errors_are_found_under_the_names_of_both_tables_of_measure() {
+fn errors_are_found_by_either_ending() {
     for text in [
         "case,speed_m_s,speed_error_m_s,tof_incident_s,tof_incident_s_deviation,tof_incident_s_error",
         "case,speed_m_s,speed_sigma_m_s,tof_incident_s,tof_incident_sigma_s",
@@ -43,6 +43,13 @@ fn a_time_in_another_unit_and_a_column_twice_are_not_left_out_without_a_word() {
     let twice = reported("speed_m_s,tof_incident_s,tof_incident_s").unwrap_err().to_string();
     assert!(twice.contains("stands there twice"), "{twice}");
     assert!(reported("speed_m_s,tof_incident_s,tof_incident_s_error").is_ok());
+}
+
+#[test]
+fn a_table_of_single_shots_is_refused_with_what_to_fit() {
+    let text = "file,speed_m_s,tof_incident_s,tof_incident_sigma_s,counted,not_counted_because";
+    let refused = Columns::of(&titles(text), &Observable::ALL, "shots.csv").map(|_| ());
+    assert!(refused.unwrap_err().to_string().contains("`speeds.csv` of the same folder"));
 }
 
 #[test]

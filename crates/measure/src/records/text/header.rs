@@ -124,7 +124,8 @@ impl TextHeader {
     }
 }
 
-fn seconds(unit: &str) -> Option<f64> {
+/// A unit of time in s.
+pub(crate) fn seconds(unit: &str) -> Option<f64> {
     prefixed(unit.trim().trim_end_matches('.'), SECONDS, PREFIXES)
 }
 

@@ -11,6 +11,7 @@ use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
 use dialect::Dialect;
 use header::TextHeader;
+pub(crate) use header::seconds;
 use rows::{RowPlan, Segments};
 use std::borrow::Cow;
 use std::fs::File;

@@ -4,7 +4,7 @@ use super::{Normalisation, Polarity, Pulse, PulseKind};
 use crate::error::{MeasureError, Result, all_finite};
 use crate::signal::baseline::{Baseline, baseline};
 use crate::signal::filters::triangular_mean;
-use crate::signal::statistics::{NORMAL_MAD, extremes, median, median_and_spread};
+use crate::signal::statistics::{NORMAL_MAD, extremes, mean, median, median_and_spread};
 use std::ops::Range;
 
 /// Samples averaged for a coarse view: noise is halved, a pulse of some ten samples stays.
@@ -133,7 +133,8 @@ fn rough_width(blocks: &[f64], cross: usize, height: impl Fn(f64) -> f64) -> f64
     ((end - top + rise) as f64).max(2.0)
 }
 
-/// Baseline before the first pulse; a rough one of the whole record if there is no such part.
+/// Baseline before the first pulse; a rough one of the whole record if there is no such part, which is
+/// off by up to what opened contacts held at rest: as far as it is from the first samples.
 fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline> {
     let quiet = &quiet[quiet.len().saturating_sub(ENOUGH)..];
     if quiet.len() >= QUIET {
@@ -148,6 +149,7 @@ fn quiet_baseline(quiet: &[f64], samples: &[f64], rough: f64) -> Result<Baseline
         noise: NORMAL_MAD * typical / std::f64::consts::SQRT_2,
         correlation: 1.0,
         quiet_samples: 0,
+        offset_sigma: (mean(&samples[..QUIET / BLOCK]) - rough).abs(),
     })
 }
 

@@ -18,27 +18,20 @@ pub(super) fn flag_digitiser(found: &mut Found, recorded: Channels<'_>, options:
     let channels = recorded.both();
     let own = channels.map(extremes);
     let ranges = options.ranges(recorded);
+    let steps = digitiser_steps(found, recorded);
     let mut flags = Vec::new();
-    let mut steps = [f64::INFINITY; 2];
     for pulse in found.pulses_mut() {
         let which = usize::from(pulse.kind == PulseKind::Wall);
         let (from, to) = pulse.extent;
         let inside = channels[which].get(from..=to).unwrap_or_default();
-        if let Some(range) = saturated(inside, own[which], pulse, ranges[which]) {
+        let run = top_run(pulse, steps[which]);
+        if let Some(range) = saturated(inside, own[which], run, ranges[which]) {
             flags.push(QualityFlag::Saturation(pulse.kind));
             let first = inside.iter().position(|sample| range.clips(*sample));
             let last = inside.iter().rposition(|sample| range.clips(*sample));
             pulse.clipped = first.zip(last).map(|(first, last)| (from + first, from + last));
         }
-        // Of samples that are not rounded, the least of some hundred is far below their noise.
-        let differences = inside.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        let step = differences.filter(|d| *d > 0.0);
-        steps[which] = steps[which].min(step.fold(f64::INFINITY, f64::min));
     }
-    if recorded.is_summed() {
-        steps = [steps[0].min(steps[1]); 2];
-    }
-    let steps = steps.map(|step| if step.is_finite() { step } else { 0.0 });
     (found.sensor.step, found.wall_channel.step) = (steps[0], steps[1]);
     let coarse =
         found.pulses().filter(|pulse| found.normalisation(pulse.kind).is_coarse(pulse.height));
@@ -87,18 +80,40 @@ fn clip_by_shape(
     flags
 }
 
-/// The range at whose end a pulse has a run of samples: the record's extremes, or the known one, of
-/// which a single sample is enough.
+/// The digitiser's step in both channels: of samples that are not rounded, the least difference of some
+/// hundred is far below their noise.
+fn digitiser_steps(found: &Found, recorded: Channels<'_>) -> [f64; 2] {
+    let mut steps = [f64::INFINITY; 2];
+    for pulse in found.pulses() {
+        let which = usize::from(pulse.kind == PulseKind::Wall);
+        let (from, to) = pulse.extent;
+        let inside = recorded.both()[which].get(from..=to).unwrap_or_default();
+        let differences = inside.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let step = differences.filter(|d| *d > 0.0);
+        steps[which] = steps[which].min(step.fold(f64::INFINITY, f64::min));
+    }
+    if recorded.is_summed() {
+        steps = [steps[0].min(steps[1]); 2];
+    }
+    steps.map(|step| if step.is_finite() { step } else { 0.0 })
+}
+
+/// Most samples of a whole pulse at its highest step: a top falls by one step within ± 0.6 widths over
+/// the root of its steps as a Gaussian does, the flattest computed ones within ± 0.8.
+fn top_run(pulse: &Pulse, step: f64) -> usize {
+    let share = (1.7 * (step / pulse.height).abs().sqrt()).max(0.15);
+    (share * pulse.width_samples).max(4.0) as usize
+}
+
+/// The range at whose end a pulse has a run of as many samples: the record's extremes, or the known one,
+/// of which a single sample is enough.
 fn saturated(
     inside: &[f64],
     (low, high): (f64, f64),
-    pulse: &Pulse,
+    run: usize,
     known: Option<DigitiserRange>,
 ) -> Option<DigitiserRange> {
-    // A round top of a hundred steps has a run of a tenth of its width.
-    let longest = (0.15 * pulse.width_samples).max(4.0) as usize;
-    let own = (DigitiserRange { low, high }, longest);
-    let (range, shortest) = known.map_or(own, |range| (range, 1));
+    let (range, shortest) = known.map_or((DigitiserRange { low, high }, run), |range| (range, 1));
     range.clips_run(inside, shortest).then_some(range)
 }
 

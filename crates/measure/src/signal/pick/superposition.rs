@@ -56,12 +56,14 @@ const OF_MANY: f64 = 2.5;
 
 impl ChannelView<'_> {
     /// What lies under a pulse at its maximum: of the wall's the sensor bead's signal, of the reflected
-    /// one the wall's. A contact that has opened is below the baseline by what it held at rest.
+    /// one the wall's. A contact that has opened is below the baseline by what it held at rest. What
+    /// is not known of the baseline is in the error.
     pub(super) fn level_under(&self, pulse: &Pulse, time: f64) -> Estimate {
         let steep = pulse.steep_width_samples();
         let foot = self.foot(pulse, time).filter(|_| pulse.kind != PulseKind::Incident);
+        let offset_sigma = self.normalisation.baseline.offset_sigma;
         let Some((foot, length)) = foot else {
-            return Estimate { value: 0.0, sigma: 0.0 };
+            return Estimate { value: 0.0, sigma: offset_sigma };
         };
         let (least, last, Under { likely, deviation }) = match self.wall {
             Some(wall) => {
@@ -80,7 +82,7 @@ impl ChannelView<'_> {
         let sigmas = known.iter().zip(deviation).map(|(known, share)| known * share);
         Estimate {
             value: likely[0] * least + likely[1] * self.opened,
-            sigma: sigmas.fold(0.0, f64::hypot),
+            sigma: sigmas.fold(offset_sigma, f64::hypot),
         }
     }
 
