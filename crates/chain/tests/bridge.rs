@@ -267,6 +267,19 @@ fn bridges_last_from_a_shot_to_the_next() {
 }
 
 #[test]
+fn bridges_that_the_wave_has_not_reached_leave_it_as_it_is() {
+    let section = |contacts, laws| Section { contacts, laws, material: None };
+    let wet = section(13..=20, vec![hertz(), liquid(VOLUME_M3, 0.0)]);
+    let dry = row(20, 0.7, vec![hertz()]);
+    let far = Chain { sections: vec![section(0..=12, vec![hertz()]), wet], ..dry.clone() };
+    let [far, dry] = [far, dry].map(|chain| common::run_for(&chain, 1e-10, 1e-4));
+    for bead in 0..6 {
+        close(far.velocity_m_s[bead], dry.velocity_m_s[bead], 1e-7);
+    }
+    assert!(far.budget.is_some());
+}
+
+#[test]
 fn what_has_no_bridges_refuses_them() {
     let laws = vec![hertz(), liquid(VOLUME_M3, 0.0)];
     let system = System::new(&row(4, 0.3, laws.clone())).unwrap();

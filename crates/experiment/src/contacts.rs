@@ -175,10 +175,7 @@ fn fill_liquid(
     given: &mut Vec<(&'static str, f64)>,
 ) -> Result<(), FileProblem> {
     for parameter in row.info.parameters.iter().filter(|p| node.get(p.name).is_none()) {
-        let is_of_oil = parameter.name == PRESSURE_VISCOSITY;
-        let oil = is_of_oil && node.get(VISCOSITY).is_none();
-        // A law with an η of its own is of another oil.
-        let liquid = liquid.filter(|_| oil || !is_of_oil);
+        let oil = parameter.name == PRESSURE_VISCOSITY && node.get(VISCOSITY).is_none();
         match liquid.and_then(|liquid| liquid.value(parameter.name)) {
             Some(value) => given.push((parameter.name, value)),
             None if oil || parameter.source == Source::Liquid => {

@@ -64,7 +64,7 @@ static NAMES: &[(&str, &str, &str)] = &[
     ("a kinematic viscosity", "m^2/s", "55 cSt"),
     ("a frequency", "Hz", "5 kHz"),
     ("an energy", "J", "1 mJ"),
-    ("a stiffness", "N/m", "100 N/m"),
+    ("a stiffness or a surface tension", "N/m", "100 N/m"),
     ("a damping constant", "N s/m", "1e-3 N s/m"),
     ("a Hertz stiffness", "N/m^(3/2)", "8.79e9 N/m^(3/2)"),
     ("a cubic damping", "kg s/m^2", "77 kg s/m^2"),

@@ -93,16 +93,6 @@ fn viscosities_that_do_not_go_together_are_mistakes_at_their_place() {
     has(changed("\"25 degC\"", "\"25 s\""), "expected a temperature in K, such as \"25 degC\"");
 }
 
-#[test]
-fn a_film_with_a_viscosity_of_its_own_takes_nothing_of_the_oil() {
-    let own = "{ law = \"film_entrained\", viscosity = \"0.1 Pa s\" }";
-    let text = film_presets()[0].text.replacen("\"film_entrained\"", own, 1);
-    let row = Experiment::from_text("own.toml", &text).unwrap();
-    let mut laws = row.sections().iter().flat_map(|section| section.laws.clone());
-    let film = laws.find(|law| law.name() == "film_entrained").unwrap();
-    assert_eq!(film.given, [("viscosity", 0.1)]);
-}
-
 /// A film and a bridge of a liquid with these keys.
 fn bridged(liquid: &str) -> String {
     let text = film_presets()[0].text.replacen("[liquid]\n", &format!("[liquid]\n{liquid}\n"), 1);

@@ -80,7 +80,7 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
         let chains = Chains { own, ..chains(&dry_model, &wet_model) };
         let gauge = Gauge::new(&chains, measured(&dry_model, 11), measured(&held, 12)).unwrap();
         let verdict = gauge.verdict(&known_oils().unwrap()).unwrap();
-        (verdict.sentence(), gauge.doubts(&verdict))
+        (verdict.sentence(), gauge.doubts(&verdict, None))
     };
     let (sentence, doubts) = said(&[]);
     assert!(sentence.starts_with("None of these"));
@@ -102,7 +102,7 @@ fn a_wet_curve_in_the_dry_ones_place_is_told() {
             Truth::of(wet, &SPEEDS_M_S).measured(22),
         );
         let gauge = gauge.unwrap();
-        gauge.doubts(&gauge.verdict(&[]).unwrap())
+        gauge.doubts(&gauge.verdict(&[]).unwrap(), None)
     };
     let swapped = reported([&wet_model, &dry_model]).unwrap();
     assert!(swapped.contains("--dry names the curve of the dry chain"), "{swapped}");
@@ -118,7 +118,7 @@ fn with_loads_of_their_own_the_advice_is_to_leave_returns_out() {
     let measured = |of: &Experiment, seed| Truth::of(of, &SPEEDS_M_S).measured(seed);
     let gauge = Gauge::new(&chains, measured(&dry_model, 31), measured(&wet_model, 32)).unwrap();
     let [motor, pump] = [0, 2].map(|at| known_oils().unwrap().remove(at));
-    let doubts = |oil| gauge.doubts(&gauge.verdict(&[oil]).unwrap());
+    let doubts = |oil| gauge.doubts(&gauge.verdict(&[oil]).unwrap(), None);
     let of_none = doubts(motor).unwrap();
     assert!(of_none.contains("incident times alone (--use incident)"), "{of_none}");
     assert!(!of_none.contains("--own"), "{of_none}");

@@ -334,8 +334,9 @@ impl<'a> PreparedShot<'a> {
         other.is_some_and(|other| difference(shot, &other) <= CONFIRMING * self.plan.accuracy)
     }
 
-    /// A fixed step as given, whatever accuracy that is: estimated by a step twice as
-    /// long, or by half of it where that fails or a check is asked for.
+    /// A fixed step as given, whatever accuracy that is: estimated by steps 2 and 1.4 times as long, or by
+    /// shorter ones where these fail or a check is asked for: twice the larger change, as one may be that of
+    /// two errors that are alike.
     fn fixed(
         &self,
         method: SolverMethod,
@@ -344,14 +345,18 @@ impl<'a> PreparedShot<'a> {
     ) -> Result<Shot, StudyError> {
         let mut shot = self.at_step(method, step_s, self.plan.watch.is_some())?;
         let at = |share: f64| self.at_step(method, share * step_s, false);
-        let other = match check {
+        let both = |[one, other]: [f64; 2]| Ok::<_, StudyError>([at(one)?, at(other)?]);
+        let others = match check {
             Check::Unchecked => return Ok(shot),
-            Check::Estimated => at(2.0).or_else(|_| at(0.5))?,
-            Check::Again | Check::By(_) => at(0.5)?,
+            Check::Estimated => both([2.0, 1.4]).or_else(|_| both([0.5, 0.7]))?,
+            Check::Again | Check::By(_) => both([0.5, 0.7])?,
         };
-        let reached =
-            accuracy::reached([shot.change(&other), 0.0], accuracy::margin(self.plan), 0.0);
-        let reached = standing(&shot, reached, 2.0 * shot.height_change(&other));
+        let most = |change: fn(&Shot, &Shot) -> f64| {
+            others.iter().map(|other| change(&shot, other)).fold(0.0, f64::max)
+        };
+        let (times, heights) = (most(Shot::change), most(Shot::height_change));
+        let reached = accuracy::reached([2.0 * times, 0.0], accuracy::margin(self.plan), 0.0);
+        let reached = standing(&shot, reached, 2.0 * heights);
         self.note_reached(&mut shot, reached);
         Ok(shot)
     }

@@ -71,7 +71,7 @@ impl Term<5> for FilmEntrained {
             Parameter {
                 name: "pressure_viscosity",
                 unit: "1/Pa",
-                meaning: "pressure–viscosity coefficient α of η exp(α p); that of [liquid] with its viscosity",
+                meaning: "pressure–viscosity coefficient α of η exp(α p); that of [liquid], else 0",
                 source: Source::Default(0.0),
                 least: 0.0,
             },

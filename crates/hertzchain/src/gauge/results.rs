@@ -49,10 +49,8 @@ pub fn json(run_gauge: &GaugeResult) -> Value {
 impl GaugeResult {
     /// Warnings on the verdict or on the film's numbers.
     pub(crate) fn doubts(&self) -> Option<String> {
-        let film = self.film.as_ref();
-        let film = film.and_then(|(problem, fit, _)| self.gauge.film_doubts((problem, fit)));
-        let all = self.gauge.doubts(&self.verdict).into_iter().chain(film);
-        all.reduce(|doubts, more| format!("{doubts} {more}"))
+        let film = self.film.as_ref().map(|(problem, fit, _)| (problem, fit));
+        self.gauge.doubts(&self.verdict, film)
     }
 
     /// The verdict on the oils, or on a film, in a sentence.

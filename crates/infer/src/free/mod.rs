@@ -71,7 +71,7 @@ impl FreeNumber {
         let found = name::find(experiment, name)?;
         let no_start = || {
             InferError::Input(format!(
-                "{name} is not given in the experiment and has no usual value; give one by --start {name}=VALUE"
+                "{name} is not given in the experiment and has no usual value; give one there, or to `fit` and `design` by --start {name}=VALUE"
             ))
         };
         let start = start::of(experiment, &found, start).ok_or_else(no_start)?;

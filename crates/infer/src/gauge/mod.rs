@@ -177,8 +177,9 @@ impl Gauge {
     }
 
     /// Warnings on the verdict: a dry curve that its model does not describe, or a pushed row of no
-    /// known oil whose load is taken from the file, or compared by its reflected times too.
-    pub fn doubts(&self, verdict: &Verdict) -> Option<String> {
+    /// known oil whose load is taken from the file, or compared by its reflected times too; a film's fit,
+    /// if there is one, that ended where the curve jumps.
+    pub fn doubts(&self, verdict: &Verdict, film: Option<(&CurveProblem, &Fit)>) -> Option<String> {
         let chi_square = self.dry_goodness().chi_square;
         let rejected = chi_square.filter(|found| found.probability < LEAST_PROBABILITY);
         let dry = rejected.map(|found| {
@@ -203,7 +204,9 @@ impl Gauge {
                 options.join(" and ")
             )
         });
-        dry.into_iter().chain(loads).reduce(|doubts, more| format!("{doubts} {more}"))
+        let film = film.and_then(|(problem, fit)| rows::jump(problem.parameters(), fit));
+        let film = film.map(|jump| format!("Of the film's numbers over all speeds: {jump}."));
+        dry.into_iter().chain(loads).chain(film).reduce(|doubts, more| format!("{doubts} {more}"))
     }
 }
 

@@ -365,12 +365,6 @@ impl Gauge {
         })
     }
 
-    /// That the film's fit ended where derivatives mean nothing, if it did.
-    pub fn film_doubts(&self, (problem, fit): (&CurveProblem, &Fit)) -> Option<String> {
-        let of_film = jump(problem.parameters(), fit)?;
-        Some(format!("Of the film's numbers over all speeds: {of_film}."))
-    }
-
     /// A statement on rows with more than one solution.
     pub fn ambiguous(&self, rows: &[WetRow]) -> Option<String> {
         let at = |of: &dyn Fn(&Contact) -> bool| -> String {
@@ -417,7 +411,7 @@ const SMALL: f64 = 0.05;
 
 /// That a model's curve jumps where a fit has ended, as where two maxima are equally high, so that
 /// derivatives by two step sizes differ and no error can be stated.
-fn jump(parameters: &[Parameter], fit: &Fit) -> Option<String> {
+pub(super) fn jump(parameters: &[Parameter], fit: &Fit) -> Option<String> {
     let (at, share) = fit.jacobian.least_agreeing().filter(|least| least.1 > DOUBTFUL)?;
     let Parameter { name, unit, .. } = &parameters[at];
     Some(format!(

@@ -4,6 +4,7 @@
 //! exclusively, so that neither another program nor a link is ever written into. It is flushed to
 //! the disk before it gets its name. What a killed program leaves is removed by the next one.
 
+use crate::records::text::{as_text, decoded};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -207,17 +208,17 @@ fn copies() -> MutexGuard<'static, Copies> {
     COPIES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The text of a table, of at most 16 MiB.
+/// The text of a table, of at most 16 MiB, in UTF-8, UTF-16 or Latin-1.
 ///
 /// # Errors
-/// What the system reports; a longer text, or one that is not UTF-8.
+/// What the system reports; a longer text.
 pub fn text(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
+    let mut bytes = Vec::new();
     let opened = opened(&peeked(path))?;
-    opened.take(MOST_TEXT + 1).read_to_string(&mut text)?;
-    match text.len() as u64 > MOST_TEXT {
+    opened.take(MOST_TEXT + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > MOST_TEXT {
         true => Err(too_long("a table", MOST_TEXT)),
-        false => Ok(text),
+        false => Ok(as_text(&decoded(&bytes))),
     }
 }
 

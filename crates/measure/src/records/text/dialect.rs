@@ -1,6 +1,6 @@
 //! Delimiter, decimal sign and columns of a text; its fields as numbers.
 
-use super::{LineEnding, Lines, text};
+use super::{LineEnding, Lines, as_text};
 use std::borrow::Cow;
 use std::io;
 use std::path::Path;
@@ -134,7 +134,7 @@ pub(super) fn beginning(file: &Path) -> io::Result<String> {
             break;
         }
         line.truncate(BEGINNING);
-        all += &text(&line);
+        all += &as_text(&line);
         all.push('\n');
     }
     Ok(all)

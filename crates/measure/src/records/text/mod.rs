@@ -90,7 +90,7 @@ pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, [u8]> {
 }
 
 /// Bytes as text without its mark; those that are not UTF-8 are Latin-1, as oscilloscopes write µ.
-fn text(bytes: &[u8]) -> String {
+pub(crate) fn as_text(bytes: &[u8]) -> String {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),

@@ -2,7 +2,7 @@
 
 use super::dialect::{Dialect, last_digit, no_number, number};
 use super::times::{self, Printed, Returns};
-use super::{LineEnding, Lines, text};
+use super::{LineEnding, Lines, as_text};
 use crate::error::{MeasureError, Result, file_name};
 use crate::records::interval::{self, SampleInterval};
 use crate::records::options::{Parts, ReadOptions};
@@ -155,7 +155,7 @@ impl Segments {
         };
         self.line += 1;
         let whole = read == LineEnding::Whole;
-        let line = text(&self.bytes);
+        let line = as_text(&self.bytes);
         let fields = self.plan.dialect.fields(&line);
         let blank = fields.iter().all(|field| field.is_empty());
         if let Some((time, values)) = self.plan.row(&fields, whole).filter(|_| !blank) {
