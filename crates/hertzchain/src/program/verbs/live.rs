@@ -9,11 +9,11 @@ use crate::options::{
 };
 use crate::program::{Failure, Folder, failure, format, print};
 use crate::{design, inference, sweep};
-use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy};
+use hertzchain_measure::records::{StreamFormat, stream_pieces, write_npy, write_whole};
 use hertzchain_measure::{Case, Level, MeasureError, Shot, SpeedRow, shots_at_level};
 use serde_json::{Value, json};
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Read, Seek, Write};
+use std::io::{self, Read};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -177,39 +177,31 @@ fn ended_well(recording: Option<JoinHandle<Result<(), MeasureError>>>) -> Result
     ended.map_err(broken)?.map_err(|error| wrong(&error.to_string()))
 }
 
-/// Rate, channels and samples of the stored shots, which their files do not state; locked while a stream
-/// comes in.
+/// Rate, channels and samples of the stored shots, which their files do not state.
 const STREAM: &str = ".stream";
 
 /// Refuses a folder with shots of a stream of another format, or of one that another program stores;
-/// notes the format of a new one. The folder is free again when the file is dropped.
-fn claim(folder: &Path, format: &str) -> Result<File, Failure> {
-    let path = folder.join(STREAM);
-    let failed = |error| wrong(&format!("cannot write {}: {error}", path.display()));
-    let mut open = File::options();
-    let open = open.create(true).truncate(false).read(true).write(true).open(&path);
-    let mut file = open.map_err(failed)?;
-    match file.try_lock() {
-        Err(TryLockError::WouldBlock) => {
-            return Err(wrong(&format!(
-                "another program is storing a stream in {}; name another folder by --out",
-                folder.display()
-            )));
-        }
-        // A file system without locks is used without.
-        Ok(()) | Err(TryLockError::Error(_)) => {}
-    }
-    let mut before = String::new();
-    file.read_to_string(&mut before).map_err(failed)?;
-    if stored(folder) > 0 && before != format {
+/// notes the format of a new one. The folder is free again when what is returned is dropped; a system
+/// that locks no folders does without.
+fn claim(folder: &Path, format: &str) -> Result<Option<File>, Failure> {
+    let lock = File::open(folder).ok();
+    let is_taken = |lock: &File| matches!(lock.try_lock(), Err(TryLockError::WouldBlock));
+    if lock.as_ref().is_some_and(is_taken) {
         return Err(wrong(&format!(
-            "{} has shots of a stream with {before}, not {format}; name another folder by --out",
+            "another program is storing a stream in {}; name another folder by --out",
             folder.display()
         )));
     }
-    file.set_len(0).and_then(|()| file.rewind()).map_err(failed)?;
-    file.write_all(format.as_bytes()).map_err(failed)?;
-    Ok(file)
+    let path = folder.join(STREAM);
+    match fs::read_to_string(&path) {
+        Ok(before) if stored(folder) > 0 && before != format => Err(wrong(&format!(
+            "{} has shots of a stream with {before}, not {format}; name another folder by --out",
+            folder.display()
+        ))),
+        _ => write_whole(&path, |out| out.write_all(format.as_bytes()))
+            .map_err(|error| wrong(&format!("cannot write {}: {error}", path.display())))
+            .map(|()| lock),
+    }
 }
 
 /// Largest number of a stored shot; 0 for none.
