@@ -8,7 +8,7 @@ from pathlib import Path
 from hertzchain import _options
 
 STUB = Path(__file__).parent / "python/hertzchain/_keywords.pyi"
-VERBS = ["shot", "sweep", "measure", "fit", "design", "gauge"]
+VERBS = ["shot", "sweep", "ensemble", "measure", "fit", "design", "gauge"]
 HEAD = '''"""Keyword options of the verbs, for type checkers: written by crates/py/keywords.py."""
 
 from collections.abc import Iterable, Mapping

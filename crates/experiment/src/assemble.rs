@@ -153,8 +153,11 @@ fn striker(
     let density = spec.materials.density_kg_m3(of_striker);
     let own = like_bead_1.then_some(first.mass_kg);
     let full = density.map(|density| sphere_mass_kg(radius_m, density));
-    let label =
-        "it differs from bead 1: expected `mass = \"8.54 g\"`, or a density in its material";
+    let mass = match spec.units {
+        Units::Si => "mass = \"8.54 g\"",
+        Units::Dimensionless => "mass = 1.0",
+    };
+    let label = format!("it differs from bead 1: expected `{mass}`, or a density in its material");
     let missing = || FileProblem::new(&shape.span, "the striker has no mass", label);
     Ok(Bead {
         radius_m,

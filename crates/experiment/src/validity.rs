@@ -279,8 +279,13 @@ impl Damping<'_> {
     /// Too strong for the law's range, or too weak to be seen.
     fn warning(&self) -> Option<FileProblem> {
         if self.strength > STRONG {
-            let label = "the two then do not come apart again";
+            let label = "the two then part with less than half of their speed, if at all";
             return Some(self.problem(label).help(validity(self.law)));
+        }
+        if self.strength == 0.0 && self.needs_viscosity() {
+            let label =
+                "its material has no viscosity: give `shear_viscosity`, or leave the law out";
+            return Some(self.problem(label));
         }
         let idle = self.strength > 0.0 && self.strength < IDLE;
         let label = "too weak to change any result";
@@ -295,11 +300,21 @@ impl Damping<'_> {
             "law `{}` is {strength} times as strong as the elastic force of {bodies}",
             law.name()
         );
-        let first = law.row.info.parameters.first();
-        let own = first.is_none_or(|p| p.source == Source::Required || law.value(p.name).is_some());
-        let material = self.collision.material().filter(|_| !own);
+        let material = self.collision.material().filter(|_| !self.has_own_number());
         let viscosity = material.and_then(MaterialSpec::viscosity_span);
         FileProblem::new(viscosity.unwrap_or(&law.span), message, label)
+    }
+
+    /// Whether the law's first number stands in the law.
+    fn has_own_number(&self) -> bool {
+        let first = self.law.row.info.parameters.first();
+        first.is_none_or(|p| p.source == Source::Required || self.law.value(p.name).is_some())
+    }
+
+    /// Whether the law's first number comes from a material that has none.
+    fn needs_viscosity(&self) -> bool {
+        let material = self.collision.material();
+        !self.has_own_number() && material.is_some_and(|it| it.viscosity_span().is_none())
     }
 
     /// The value at which the law is as strong as the elastic force: every

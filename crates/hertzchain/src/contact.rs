@@ -1,4 +1,4 @@
-//! Hertz's contact of two bodies at its largest force.
+//! Hertz's contact of two bodies at its highest pressure.
 
 use hertzchain_chain::{BeadPair, Chain};
 use hertzchain_experiment::Units;
@@ -10,12 +10,12 @@ use std::f64::consts::PI;
 /// [Thornton1997].
 const FIRST_YIELD: f64 = 1.6;
 
-/// A contact at its largest force: circle and pressure of elastic spheres [Hertz1881].
+/// A contact at a force: circle and pressure of elastic spheres [Hertz1881].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct HertzContact {
     /// Number of the contact.
     pub(crate) contact: usize,
-    /// Its largest force.
+    /// The wall's largest force, the hardest contact's at its largest overlap, where losses are none.
     pub(crate) force_n: f64,
     /// Yield strength of the weaker ball, where it is known.
     pub(crate) material_yield_strength_pa: Option<f64>,

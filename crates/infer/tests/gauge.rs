@@ -61,7 +61,7 @@ fn an_unknown_oil_is_none_of_these_until_it_has_a_row() {
     table.push(row);
     assert_eq!(
         gauge.verdict(&table).unwrap().sentence(),
-        "It is mine: no other known oil gives these times."
+        "Of the known oils only mine gives these times."
     );
 }
 

@@ -18,8 +18,9 @@ const NOISE_V: f64 = 2e-3;
 const SPEED_ERROR_M_S: f64 = 5e-4;
 
 /// A shot of the dry chain at a speed, sampled at 1 MHz from 0.6 ms before the
-/// impact, upside down and with an offset, as real ones are.
-fn record(speed_m_s: f64, seed: u64, separate: bool) -> Vec<Vec<f64>> {
+/// impact, upside down and with an offset, as real ones are. A sample's noise keeps a share of
+/// that of the one before.
+fn record(speed_m_s: f64, seed: u64, separate: bool, memory: f64) -> Vec<Vec<f64>> {
     let dry = preset("dry").unwrap();
     let (plan, _) = Plan::from_experiment(&dry, Some(speed_m_s)).unwrap();
     let sensors = vec![Sensor::Bead(plan.sensor_bead), Sensor::Contact(plan.chain.beads.len())];
@@ -27,8 +28,10 @@ fn record(speed_m_s: f64, seed: u64, separate: bool) -> Vec<Vec<f64>> {
     plan.duration_s = Some(4e-3);
     let trace = shoot(&plan).unwrap().trace.unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    let mut noise = 0.0;
     let mut sample = |force_n: f64| -> f64 {
-        let noise: f64 = StandardNormal.sample(&mut generator);
+        let own: f64 = StandardNormal.sample(&mut generator);
+        noise = memory * noise + (1.0 - memory * memory).sqrt() * own;
         0.1 - GAIN_V_N * force_n + NOISE_V * noise
     };
     let quiet = [0.0; 600];
@@ -43,12 +46,16 @@ fn record(speed_m_s: f64, seed: u64, separate: bool) -> Vec<Vec<f64>> {
 }
 
 fn pulses(speed_m_s: f64, seed: u64, separate: bool) -> Pulses {
+    remembering(speed_m_s, seed, (separate, 0.0))
+}
+
+fn remembering(speed_m_s: f64, seed: u64, (separate, memory): (bool, f64)) -> Pulses {
     // The photogate errs by one standard error.
     let measured = Estimate {
         value: speed_m_s + if seed.is_multiple_of(2) { SPEED_ERROR_M_S } else { -SPEED_ERROR_M_S },
         sigma: SPEED_ERROR_M_S,
     };
-    let volts = record(speed_m_s, seed, separate);
+    let volts = record(speed_m_s, seed, separate, memory);
     Pulses::of(&format!("shot {seed}"), (Some(measured), Some(speed_m_s)), 1e-6, &volts).unwrap()
 }
 
@@ -69,7 +76,7 @@ fn pulls(records: Vec<Pulses>, free: &[&str], exact: &[f64]) {
     }
     let goodness = Goodness::with_nuisances(problem.nuisance_count(), &problem, &best);
     let chi_square = goodness.chi_square.unwrap();
-    // Noise is white and normal, so that only chance moves chi-square.
+    // Noise is white and normal, or made so, so that only chance moves chi-square.
     assert!((1e-3..0.999).contains(&chi_square.probability), "{chi_square:?}");
 }
 
@@ -86,8 +93,15 @@ fn so_they_do_from_channels_of_their_own_with_both_gains_free() {
 }
 
 #[test]
+fn noise_that_is_correlated_over_many_samples_is_made_white() {
+    let of = |speed_m_s, seed| remembering(speed_m_s, seed, (false, 0.9));
+    let records = vec![of(0.2, 1), of(0.4, 2), of(0.8, 3)];
+    pulls(records, &["eta", "B", "sensor_gain"], &[3.2e4, 77.0, GAIN_V_N]);
+}
+
+#[test]
 fn records_that_cannot_be_fitted_say_why() {
-    let volts = record(0.5, 6, false);
+    let volts = record(0.5, 6, false, 0.0);
     let speed = Estimate { value: 0.5, sigma: 0.0 };
     let of = |speed, volts: &[Vec<f64>]| Pulses::of("shot", (speed, None), 1e-6, volts);
     let error = of(None, &volts).unwrap_err().to_string();

@@ -8,6 +8,7 @@ use crate::signal::{Bandwidth, Estimate, Method, QualityFlag, SignalOptions};
 use crate::{Example, Level, MeasureError, Shot, ShotList};
 use indexmap::IndexMap;
 use rayon::prelude::*;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// Samples that are read before they are measured together: enough for all threads, and some
@@ -19,6 +20,9 @@ const PIECE: usize = 1 << 20;
 
 /// Samples about pulses that shots hold, some 250 MB: later shots hold none, and keep their own picks.
 const MOST_HELD: usize = 1 << 26;
+
+/// Widths of pulses of balls, in s: others are probably in another unit of time.
+const WIDTHS_S: RangeInclusive<f64> = 1e-6..=5e-3;
 
 /// How recordings are read and measured.
 #[derive(Clone, Debug, Default)]
@@ -395,6 +399,15 @@ impl Measurement {
                 )
             },
         );
+        let is_strange = |shot: &Shot| {
+            shot.flight.as_ref().is_ok_and(|it| !WIDTHS_S.contains(&it.picks.wall.width_s))
+        };
+        self.note_shots(is_strange, |shots| {
+            format!(
+                "pulses of {shots} shots are narrower than 1 µs or wider than 5 ms at half height, where those of \
+                 metal balls have 20 to 200 µs: check the rate (--rate) or the unit of times (--time-unit)"
+            )
+        });
         self.note_shots(
             |shot| shot.doubts.contains(&QualityFlag::Drift),
             |shots| {

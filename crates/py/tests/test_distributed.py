@@ -117,6 +117,14 @@ def test_numbers_of_parts_that_are_none_are_refused(small, client, tmp_path):
         distributed.fit(noisy("dry", 1), "dry", free="eta", folder=tmp_path, client=client, points=0)
 
 
+def test_a_shard_is_computed_with_the_threads_asked_for(small, tmp_path, monkeypatch):
+    asked: list[int] = []
+    monkeypatch.setattr(distributed, "_shard", lambda path, name, number, of, threads: asked.append(threads) or (number, False))
+    for how in ({}, {"threads": 2}):
+        distributed.sweep(small, [0.5], folder=tmp_path, **how)
+    assert asked == [0, 2]
+
+
 def test_a_campaign_is_cut_by_its_series(client, tmp_path):
     rig = hc.load(RIG)
     series = _native.campaign_series(rig, "{}")

@@ -53,6 +53,8 @@ def test_what_is_odd_is_a_warning():
         (lambda e: hc.shot(e, trace=["bed_3"]), "no sensor"),
         (lambda e: hc.shot(e, trace=["bead"]), "no sensor"),
         (lambda e: hc.shot(e, trace=True, interval_s=-1.0), "positive"),
+        (lambda e: hc.shot(e, interval_s=1e-6), "trace"),
+        (lambda e: hc.fit({"speed_m_s": [0.5]}, e, free="Y", points=4), "cluster"),
         (lambda e: hc.sweep(e, [[0.1]]), "one dimension"),
         (lambda e: hc.sweep(e, "1:2"), "FROM:TO:COUNT"),
         (lambda e: hc.sweep(e, np.ones(100_001)), "at most 100000"),

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import hertzchain as hc
+from hertzchain import distributed
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import keywords
@@ -16,12 +17,19 @@ def test_the_stub_for_type_checkers_has_the_options_of_rust():
     assert keywords.STUB.read_text(encoding="utf-8") == keywords.stub(), "run python crates/py/keywords.py"
 
 
-@pytest.mark.parametrize("verb", ["shot", "sweep", "measure", "fit", "design", "gauge"])
+@pytest.mark.parametrize("verb", keywords.VERBS)
 def test_every_option_is_in_the_signature_and_documented(verb):
     function = getattr(hc, verb)
     known = inspect.signature(function).parameters
     names = [line.split(":")[0].strip() for line in keywords.fields(verb).splitlines()]
     assert names and all(name in known and name in function.__doc__ for name in names)
+
+
+def test_speeds_of_an_ensemble_are_its_argument_alone(small, tmp_path):
+    for call in (hc.ensemble, lambda *one, **how: distributed.sweep(*one, folder=tmp_path, **how)):
+        with pytest.raises(TypeError, match="'speeds'; did you mean 'speed'"):
+            call(small, speeds="0.2,0.4")
+    assert "speeds :" not in hc.ensemble.__doc__ and "speeds" not in inspect.signature(hc.ensemble).parameters
 
 
 def test_values_of_any_python_type_reach_the_option(small):

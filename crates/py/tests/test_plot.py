@@ -88,6 +88,41 @@ def test_fits_have_bands_and_posteriors_corners():
     assert plot.corner(fitted, axes=given)[0, 0] is given[0, 0]
 
 
+def test_a_case_has_one_colour_and_no_two_cases_one_look(small):
+    swept = hc.sweep(small, [0.2, 0.5])
+
+    def looks(ax):
+        """Colour and dashes by label."""
+        handles, labels = ax.get_legend_handles_labels()
+        lines = [handle if hasattr(handle, "get_linestyle") else handle[0] for handle in handles]
+        return {label: (line.get_color(), line.get_linestyle()) for label, line in zip(labels, lines, strict=True)}
+
+    curves = {name: swept for name in ("dry", "dry pushed", "silicone", "a", "h")}
+    found = looks(plot.times_of_flight(curves))
+    assert len(set(found.values())) == len(found) == 10
+    for others in (["silicone", "glycerol"], ["pump", "glycerol", "silicone"]):
+        assert looks(plot.ratios(dict.fromkeys(others, swept), swept))["silicone"][0] == found["silicone incident"][0]
+
+
+def test_legends_of_long_names_stay_inside_the_figure(small):
+    swept = hc.sweep(small, [0.2, 0.5])
+    ax = plot.times_of_flight({"dry": swept, "dry pushed": swept, "silicone of 100 cSt": swept})
+    ax.figure.canvas.draw()
+    box, figure = ax.get_legend().get_window_extent(), ax.figure.bbox
+    assert box.x0 >= 0.0 and box.x1 <= figure.width and box.y1 <= figure.height
+
+
+@pytest.mark.parametrize("ends", [(0.6, 1.23), (0.98, 1.02), (0.3, 1.2), (0.075, 1.23), (1e-3, 3.0), (0.011, 1.3)])
+def test_axes_of_any_range_have_three_ticks(ends):
+    ax = plt.subplots()[1]
+    ax.plot(ends, ends)
+    ax.set_xscale("log")
+    plot.plain_ticks(ax.xaxis, (1.0, 2.0, 5.0))
+    low, high = ax.get_xlim()
+    shown = [tick for tick in ax.get_xticks() if low <= tick <= high]
+    assert 3 <= len(shown) <= 9
+
+
 def test_functions_draw_into_axes_they_are_given(small):
     swept = hc.sweep(small, [0.2, 0.5])
     own = plt.subplots()[1]

@@ -83,9 +83,9 @@ def test_arrays_are_recordings_too(small):
     assert record["tof_incident_s"]["value"] == pytest.approx(shot.tof_incident_s, abs=1e-7)
     # Not in which folder of this process it was.
     assert record["file"] == "array.npy" and found.tables["shots.csv"] == hc.measure(volts, rate=1e6, beads=10, sensor=3).tables["shots.csv"]
-    # Rows are shots, also where there are more of them than samples.
+    # Rows are shots, also where there are more of them than samples, if that is stated.
     few = volts[::4]
-    assert len(hc.measure(np.tile(few, (few.size + 1, 1)), rate=2.5e5).shots) == few.size + 1
+    assert len(hc.measure(np.tile(few, (few.size + 1, 1)), rate=2.5e5, rows="shots").shots) == few.size + 1
 
 
 def test_what_can_not_be_read_is_told(tmp_path):
@@ -97,4 +97,37 @@ def test_what_can_not_be_read_is_told(tmp_path):
     with pytest.raises(hc.OptionError, match='rate = "fast"'):
         hc.measure(tmp_path / "empty.csv", rate="fast")
     with pytest.raises(hc.OptionError, match="volts"):
-        hc.measure(np.zeros((2, 2, 2)))
+        hc.measure(np.zeros((2, 2, 2, 2)))
+
+
+@pytest.mark.filterwarnings("ignore::hertzchain.ExperimentWarning")
+def test_arrays_of_any_axes_are_read_as_their_files_are(small, tmp_path):
+    traces = hc.shot(small, 0.5, trace=["bead_3", "bead_plus_wall_3"], interval_s=1e-6, duration=2e-3).trace
+    assert traces is not None
+    both = 1e-2 * np.array(list(traces.signals.values()))
+    both += np.random.default_rng(0).normal(0.0, 1e-4, both.shape)
+    how = {"rate": 1e6, "beads": 10, "sensor": 3}
+
+    def times(records, **more):
+        return [(record.get("tof_incident_s"), record.get("missing")) for record in hc.measure(records, **how, **more).shots]
+
+    shapes = {"shots": both, "channels": both.T, "both": both[None], "columns": np.tile(both, (5, 1)).T}
+    for name, volts in shapes.items():
+        np.save(tmp_path / f"{name}.npy", volts)
+        assert times(volts) == times(tmp_path / f"{name}.npy")
+    assert [len(times(volts)) for volts in shapes.values()] == [2, 1, 1, 10]
+    # A channel is chosen from rows, which are no shots then.
+    assert times(both, channel=2) == times(both[1])
+    pandas = pytest.importorskip("pandas")
+    assert times(pandas.Series(both[1])) == times(both[1]) and times(pandas.DataFrame(both.T)) == times(both.T)
+    assert times(pandas.Series([str(tmp_path / "shots.npy")])) == times(both)
+
+
+@pytest.mark.filterwarnings("ignore::hertzchain.ExperimentWarning")
+def test_flags_are_texts_whether_a_shot_has_some_or_none(records):
+    pandas = pytest.importorskip("pandas")
+    texts = ("file", "case", "counted", "not_counted_because", "flags")
+    for found in (hc.measure(records, rig=SMALL), hc.measure(np.random.default_rng(0).normal(size=2000), rate=1e6)):
+        table = found.to_pandas()
+        assert all(isinstance(cell, str) for name in texts for cell in table[name])
+        assert not any(pandas.api.types.is_numeric_dtype(table[name]) for name in texts)

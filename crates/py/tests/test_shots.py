@@ -221,6 +221,11 @@ def test_dimensionless_chains_have_no_units():
     assert swept.to_xarray()["tof_incident_s"].attrs["units"] == "1"
     with pytest.raises(hc.OptionError, match="dimensionless"):
         hc.shot(chain, "1 m/s")
+    for speeds in ("1 km/h,2 km/h", "0.5, 1.m/s", "log:0.1:1e0 m/s:4"):
+        with pytest.raises(hc.OptionError, match="dimensionless"):
+            hc.sweep(chain, speeds)
+    assert hc.sweep(chain, "5e-1,1E0").speed_m_s.tolist() == swept.speed_m_s.tolist()
+    assert hc.sweep(chain, "log:1e-1:1.:3").speed_m_s.size == 3
 
 
 def test_competing_maxima_and_a_wall_pulse_without_an_incident_one_are_reported():

@@ -30,6 +30,10 @@ const TIGHTER: f64 = 20.0;
 /// Most times that steps are halved for that.
 const MOST_HALVINGS: usize = 6;
 
+/// What batches need for calibration.
+const OF_UNIFORM: &str =
+    "calibration is for uniform rows that fly free, damped moderately, timed by peaks";
+
 /// Estimates are this many times the largest error over the condition of the calibration shots most
 /// like one: in between others may be worse.
 const MARGIN: f64 = 2.0;
@@ -63,7 +67,7 @@ const OF_KINKS: f64 = 40.0;
 /// Share of the accuracy asked by which interpolations of smooth peaks differ at most.
 const SMOOTH: f64 = 0.01;
 
-/// Share of calibration shots that must converge.
+/// Share of calibration shots that must be of the family, and converge.
 const CONVERGED: f64 = 0.75;
 
 /// Halving a step leaves at most a quarter of an error: what that changes is three times what is
@@ -222,15 +226,18 @@ impl Calibration {
         by_speed: bool,
         set: InstructionSet,
     ) -> Result<Self, &'static str> {
-        let first = plans.first().ok_or("no shot can be computed")?;
+        let all = plans.len();
+        let uniform = |plan: &&Plan| suits(plan) && accuracy::is_uniform(plan);
+        let plans: Vec<&Plan> = plans.iter().filter(uniform).collect();
+        let first = *plans.first().ok_or(OF_UNIFORM)?;
         let system = first.chain.system().map_err(|_| "no shot can be computed")?;
-        let family = |plan: &Plan| belongs(plan, (first, &system));
-        if !plans.iter().all(family) {
-            return Err("calibration is for uniform rows that fly free, timed by peaks");
+        let family = |plan: &&Plan| belongs(plan, (first, &system));
+        if (plans.len() as f64) < CONVERGED * all as f64 || !plans.iter().all(family) {
+            return Err(OF_UNIFORM);
         }
         let own = Setting::of(first).ok_or("equal steps do not reach this accuracy")?;
-        let sample = Sample::new(plans, own, (by_speed, set))?;
         let shots = plans.len();
+        let sample = Sample::new(plans, own, (by_speed, set))?;
         let mut chosen =
             Self { tiers: Vec::new(), first: (first.clone(), system), reached: 0.0, shots };
         let mut rest = vec![OF_ADAPTIVE; shots];
@@ -300,19 +307,10 @@ impl Calibration {
         &self.tiers
     }
 
-    /// Shots of plans with equal steps; `None` of those that fail or are not of the family.
-    pub(crate) fn run(
-        &self,
-        tier: &Tier,
-        plans: &[&Plan],
-        set: InstructionSet,
-    ) -> Vec<Option<Shot>> {
+    /// Whether a plan is of the family.
+    pub(crate) fn suits(&self, plan: &Plan) -> bool {
         let (first, system) = &self.first;
-        let mut systems = systems(plans);
-        for (plan, own) in plans.iter().zip(&mut systems) {
-            *own = own.take().filter(|_| belongs(plan, (first, system)));
-        }
-        run_lanes(plans, &systems, set, &tier.setting)
+        belongs(plan, (first, system))
     }
 }
 
@@ -329,6 +327,11 @@ fn kink(interpolation: f64, usual: f64) -> f64 {
 }
 
 impl Tier {
+    /// Shots of plans with equal steps; `None` of those that fail.
+    pub(crate) fn run(&self, plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
+        run_lanes(plans, &systems(plans), set, &self.setting)
+    }
+
     /// Whether it is worth trying at a plan's speed.
     pub(crate) fn serves(&self, plan: &Plan) -> bool {
         let at_speed = || self.places.closest(plan, None).is_some_and(|at| self.records[at].serves);
@@ -402,11 +405,10 @@ impl<'a> Sample<'a> {
     /// With times of flight right to a small share of what is asked: steps are halved until that
     /// changes none by more, but those of a few shots with kinks near their peaks.
     fn new(
-        plans: &'a [Plan],
+        mut plans: Vec<&'a Plan>,
         own: Setting,
         (by_speed, set): (bool, InstructionSet),
     ) -> Result<Self, &'static str> {
-        let mut plans: Vec<&Plan> = plans.iter().collect();
         plans.sort_by(|a, b| speed_m_s(a).total_cmp(&speed_m_s(b)));
         let systems = systems(&plans);
         let run = |setting: Setting| {

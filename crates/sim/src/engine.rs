@@ -48,26 +48,55 @@ pub fn run_plans(
 ) -> Vec<Result<Shot, StudyError>> {
     let all: Vec<&Plan> = plans.iter().collect();
     let Control::Calibrated(calibration) = control else {
-        let shots = in_blocks(&all, &|block| {
-            let shots = run_block(block, control, set);
-            block.iter().for_each(|_| progress());
-            shots
-        });
-        return shots.into_iter().map(|(_, shot)| shot).collect();
+        return one_by_one(&all, control, set, progress);
     };
+    let (like, unlike): (Vec<usize>, Vec<usize>) =
+        (0..plans.len()).partition(|&at| calibration.suits(&plans[at]));
+    let of = |places: &[usize]| places.iter().map(|&at| all[at]).collect::<Vec<_>>();
+    let shots = calibrated(&of(&like), calibration, set, progress);
+    let others = one_by_one(&of(&unlike), Control::PerShot { checked: false }, set, progress);
+    let mut shots: Vec<(usize, _)> =
+        like.into_iter().zip(shots).chain(unlike.into_iter().zip(others)).collect();
+    shots.sort_unstable_by_key(|(at, _)| *at);
+    shots.into_iter().map(|(_, shot)| shot).collect()
+}
+
+/// Runs plans of which each has a control of its own.
+fn one_by_one(
+    plans: &[&Plan],
+    control: Control<'_>,
+    set: InstructionSet,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<Result<Shot, StudyError>> {
+    let shots = in_blocks(plans, &|block| {
+        let shots = run_block(block, control, set);
+        block.iter().for_each(|_| progress());
+        shots
+    });
+    shots.into_iter().map(|(_, shot)| shot).collect()
+}
+
+/// Runs plans of a calibrated family: what one setting leaves open takes the next, and at last the
+/// adaptive loop.
+fn calibrated(
+    plans: &[&Plan],
+    calibration: &Calibration,
+    set: InstructionSet,
+    progress: &(dyn Fn() + Sync),
+) -> Vec<Result<Shot, StudyError>> {
     let mut shots: Vec<Option<Shot>> = vec![None; plans.len()];
     let mut open: Vec<usize> = (0..plans.len()).collect();
     for tier in calibration.tiers() {
         let (here, mut later): (Vec<usize>, Vec<usize>) =
-            open.into_iter().partition(|&at| tier.serves(&plans[at]));
-        let together: Vec<&Plan> = here.iter().map(|&at| &plans[at]).collect();
-        let run = in_blocks(&together, &|block| calibration.run(tier, block, set));
+            open.into_iter().partition(|&at| tier.serves(plans[at]));
+        let together: Vec<&Plan> = here.iter().map(|&at| plans[at]).collect();
+        let run = in_blocks(&together, &|block| tier.run(block, set));
         for (at, (_, shot)) in here.into_iter().zip(run) {
             let Some(mut shot) = shot else {
                 later.push(at);
                 continue;
             };
-            match tier.is_right(&plans[at], &mut shot, shots[at].as_ref()) {
+            match tier.is_right(plans[at], &mut shot, shots[at].as_ref()) {
                 true => progress(),
                 false => later.push(at),
             }
@@ -79,8 +108,7 @@ pub fn run_plans(
     for at in open {
         right[at] = false;
     }
-    // What needs a closer look takes the adaptive loop.
-    let closer = |((plan, shot), right): ((&Plan, Option<Shot>), bool)| match (shot, right) {
+    let closer = |((plan, shot), right): ((&&Plan, Option<Shot>), bool)| match (shot, right) {
         (Some(shot), true) => Ok(shot),
         (shot, _) => {
             let shot = match shot {

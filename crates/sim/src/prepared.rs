@@ -562,6 +562,12 @@ impl<'a> PreparedShot<'a> {
         let at_end_m_s = outcome.velocity_m_s.first().filter(|_| own_end).copied();
         let at_end = at_end_m_s.map(|velocity_m_s| (outcome.time_s, velocity_m_s));
         let end = tracker.last_word().or(at_end);
+        // In free flight the velocity stays as it is, and is right to the last bit at the end.
+        let parted = |(own_s, own_m_s): (f64, f64)| match separation.last() {
+            Some((time_s, _)) if self.system.flies_free() => (time_s, own_m_s),
+            last => last.unwrap_or((own_s, own_m_s)),
+        };
+        let end = end.map(parted);
         Shot {
             rebound: is_struck.then(|| Rebound {
                 first: separation.first(),

@@ -25,11 +25,11 @@ pub struct Flight {
 pub struct Rebound {
     /// When it first let go of bead 1, in s, and its velocity then, in m/s.
     pub first: Option<(f64, f64)>,
-    /// Its velocity in m/s at the end of the shot: once it is away for good, or
-    /// after six times the time that the pulse took to the wall. `None` when the plan does
-    /// not follow it, or when a duration that was asked for was over before.
+    /// Its velocity in m/s when it last let go of bead 1 before it was away for good, or before
+    /// six times the time that the pulse took to the wall; then where it is in contact at that time.
+    /// `None` when the plan does not follow it, or when a duration that was asked for was over before.
     pub end_m_s: Option<f64>,
-    /// When it had that velocity, in s: on an incline it changes in flight.
+    /// When it had that velocity, in s.
     pub end_s: Option<f64>,
 }
 
@@ -50,7 +50,8 @@ pub struct Shot {
     pub pulse_speed_beads_s: Option<f64>,
     /// The striker afterwards; `None` without a striker.
     pub rebound: Option<Rebound>,
-    /// The contact of the highest Hertz pressure and its largest force in N, when a budget was asked for.
+    /// The contact of the highest Hertz pressure and its force in N at its largest overlap, when a budget was
+    /// asked for.
     pub hardest: Option<(usize, f64)>,
     /// Energy at the end, when a budget was asked for.
     pub budget: Option<Budget>,

@@ -201,14 +201,31 @@ fn a_rebound_on_an_incline_belongs_to_its_time() {
     let shot = shoot(&plan(&text).watching(watched, Some(interval_s))).unwrap();
     let (trace, rebound) = (shot.trace.unwrap(), shot.rebound.unwrap());
     let end_s = rebound.end_s.unwrap();
-    let before = trace.time_s.iter().take_while(|time| **time <= end_s).count() - 1;
-    // Weight alone acts between the sample and the reported time.
-    let since_s = end_s - trace.time_s[before];
-    let expected = trace.columns[0][before] + 9.80665 * 20_f64.to_radians().sin() * since_s;
+    let after = trace.time_s.iter().take_while(|time| **time <= end_s).count();
+    // Weight alone acts between the reported time and the sample.
+    let since_s = end_s - trace.time_s[after];
+    let expected = trace.columns[0][after] + 9.80665 * 20_f64.to_radians().sin() * since_s;
     let off = (rebound.end_m_s.unwrap() - expected).abs();
     assert!(off < 1e-9, "{off:e}");
     // The stop, pushed by the beads, moves off.
     assert!(trace.columns[1].iter().any(|speed| *speed > 1e-3));
+}
+
+#[test]
+fn the_strikers_last_separation_hangs_on_no_accuracy() {
+    let text = "units = \"dimensionless\"\nstriker = { speed = 0.6 }\nbeads = [{ count = 5 }]\n\
+                contacts = [{ laws = [\"elastic_hertz\", { law = \"damping_linear\", coefficient = 0.05 }] }]\n\
+                far_end = { kind = \"stop\", mass = 46 }\n";
+    let of = |accuracy| {
+        let rebound = shoot(&plan(text).with_accuracy(accuracy)).unwrap().rebound.unwrap();
+        (rebound.end_s.unwrap(), rebound.end_m_s.unwrap())
+    };
+    let (exact_s, exact_m_s) = of(1e-9);
+    for accuracy in [1e-4, 1e-5, 1e-6, 1e-7] {
+        let (time_s, velocity_m_s) = of(accuracy);
+        assert!((time_s / exact_s - 1.0).abs() < 10.0 * accuracy, "{time_s} {exact_s}");
+        assert!((velocity_m_s / exact_m_s - 1.0).abs() < 30.0 * accuracy, "{velocity_m_s}");
+    }
 }
 
 /// Soft and stiff beads by turns behind a heavy soft striker, before a light stop.

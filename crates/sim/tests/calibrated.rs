@@ -118,6 +118,25 @@ fn what_is_not_calibrated_says_why() {
 }
 
 #[test]
+fn shots_damped_beyond_the_elastic_force_are_controlled_each_alone() {
+    let dry = preset("dry").unwrap();
+    let cubic = |i| if i % 10 == 0 { 4e4 } else { 77.0 };
+    let values: Vec<f64> = (0..200).map(cubic).collect();
+    let found = |accuracy, control| {
+        let batch = batch(&dry, "log:0.1:1:200", accuracy, control);
+        let batch = batch.with_number("damping_cubic.coefficient", values.clone()).unwrap();
+        batch.run(Shard::WHOLE, &|| {})
+    };
+    let (found, exact) =
+        (found(1e-5, ErrorControl::Calibrated), found(1e-7, ErrorControl::PerShot));
+    assert!(found.error_control.contains("calibration shots"), "{}", found.error_control);
+    let reached = found.rows.column(Column::Accuracy);
+    for (error, reached) in errors(&found, &exact).into_iter().zip(reached) {
+        assert!(error <= reached + 1e-7 && *reached <= 1e-5, "{error:e} {reached:e}");
+    }
+}
+
+#[test]
 fn numbers_that_differ_from_shot_to_shot_are_calibrated_together() {
     let dry = preset("dry").unwrap();
     let values: Vec<f64> = (0..200).map(|i| 40.0 + 0.4 * f64::from(i)).collect();

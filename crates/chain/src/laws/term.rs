@@ -328,7 +328,9 @@ impl<T: Term<C>, const C: usize> Law for Of<T, C> {
             false => Err(LawError {
                 law: T::INFO.name,
                 what: format!(
-                    "its coefficients {k:?} for this pair of bodies must be finite and not negative"
+                    "its coefficients {k:?} for this pair of bodies must be finite and not negative: give the \
+                     bodies a material{}",
+                    own_numbers(&T::INFO)
                 ),
             }),
         }
@@ -404,6 +406,13 @@ impl Row {
         let values = self.info.parameters.iter().map(|p| value_of(p, given).map_err(fail));
         Ok((self.build)(&values.collect::<Result<Vec<_>, _>>()?))
     }
+}
+
+/// What a law can be given in place of materials, in words.
+fn own_numbers(info: &LawInfo) -> String {
+    let own = info.parameters.iter();
+    let own = own.filter(|p| matches!(p.source, Source::Materials | Source::Hertz));
+    own.map(|p| format!(", or the law its `{}`", p.name)).collect()
 }
 
 /// The value of one parameter among those given.

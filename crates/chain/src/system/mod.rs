@@ -11,7 +11,7 @@ mod statics;
 pub(crate) use contact::TouchColumns;
 
 use crate::chain::{Chain, ChainError, Tension};
-use crate::laws::{Columns, Law};
+use crate::laws::{Closed, Columns, Law};
 use crate::material::BeadPair;
 use crate::motion::Motion;
 use crate::sensor::Sensor;
@@ -236,19 +236,18 @@ impl System {
         a
     }
 
-    /// K²/R*³ of each contact, its Hertz pressure's cube at one force, over the cube of its yield strength
+    /// (K/R*)² of each contact, its Hertz pressure's square at one overlap, over the square of its yield strength
     /// in the largest known one, at which those that are not known are taken; 0 where no contact is.
     pub(crate) fn pressure_factors(&self) -> Vec<f64> {
         let known = self.kinds.iter().filter_map(|(_, pair)| pair.yield_strength_pa());
         let strongest_pa = known.fold(0.0, f64::max);
         let weakness = |pair: &BeadPair| {
-            pair.yield_strength_pa().map_or(1.0, |own| (strongest_pa / own).powi(3))
+            pair.yield_strength_pa().map_or(1.0, |own| (strongest_pa / own).powi(2))
         };
         let (mut kinds, mut factor) = (self.kinds.iter().peekable(), 0.0);
         let of_contact = |contact: usize| {
             if let Some((_, pair)) = kinds.next_if(|(first, _)| *first <= contact) {
-                let squared: f64 = pair.hertz_stiffness().powi(2);
-                let found = squared / pair.radius_m.powi(3) * weakness(pair);
+                let found = (pair.hertz_stiffness() / pair.radius_m).powi(2) * weakness(pair);
                 factor = if found.is_finite() { found } else { 0.0 };
             }
             if self.has_contact(contact) { factor } else { 0.0 }
@@ -262,6 +261,14 @@ impl System {
             Sensor::Position(_) | Sensor::Velocity(_) => 0.0,
             _ => self.scales.silent_force_n,
         }
+    }
+
+    /// What the losses of the first contact add to its elastic force, over that force: at the shot's speed and the
+    /// overlap at which the elastic force alone stops it.
+    pub fn damping_share(&self) -> f64 {
+        let Scales { speed_m_s, time_s, .. } = self.scales;
+        let force_n = |rate| self.unclipped_force(0, Closed::new(speed_m_s * time_s, rate));
+        force_n(speed_m_s) / force_n(0.0) - 1.0
     }
 
     /// Whether bodies without contact fly on straight lines at constant speed.

@@ -52,7 +52,7 @@ impl LeadingPulse {
 /// of a striker of `mass_ratio` M/m that ends at rest, everything else at rest too.
 ///
 /// N waves with energy shares e_i have Σ e_i = 1 and Σ √e_i = √(M / (μ m)), μ the effective
-/// mass [`SolitaryShape::effective_mass`]; the sum of roots is at most √N, so
+/// mass of a wave; the sum of roots is at most √N, so
 /// N ≥ M/(μ m). A lower bound from conservation alone, no prediction of the
 /// train: below one, a single wave has momentum to spare and the striker bounces.
 pub fn least_waves(shape: &SolitaryShape, mass_ratio: f64) -> f64 {

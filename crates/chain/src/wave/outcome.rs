@@ -48,8 +48,8 @@ pub struct Outcome {
     pub bridged: Vec<bool>,
     /// Energy terms at the end, when a budget was asked for.
     pub budget: Option<Budget>,
-    /// The contact of the highest Hertz pressure and its largest force in N, with the one at rest, when a
-    /// budget was asked for.
+    /// The contact of the highest Hertz pressure and its force in N at its largest overlap, with the one at
+    /// rest, when a budget was asked for.
     pub hardest: Option<(usize, f64)>,
     /// What it cost.
     pub work: Work,

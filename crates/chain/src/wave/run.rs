@@ -189,8 +189,8 @@ impl<'a> Wave<'a> {
         let finished = self.show(h, observers);
         if let Some(mut hardest) = self.hardest.take() {
             let contacts = self.contacts();
-            let forces = &self.pass.dynamic[contacts.start + 1..=contacts.end];
-            hardest.step(&self.piece(h), forces, contacts);
+            let overlaps_m = &self.pass.overlap[contacts.clone()];
+            hardest.step(&self.piece(h), overlaps_m, contacts);
             self.hardest = Some(hardest);
         }
         self.accept(h);

@@ -9,13 +9,14 @@ mod results;
 mod tables;
 mod validation;
 
+pub(crate) use self::tables::tables_of_any;
 pub use self::{
     alternatives::{AlternativeModel, AlternativeModels, Unfitted},
     checkpoint::{CHAIN, finished, leave, saved},
     limits::Limit,
     more::{Curves, More, Sampled},
     results::{inferred, joined, json, rows_json},
-    tables::{tables, tables_of_any},
+    tables::tables,
 };
 
 use crate::failure::Failure;

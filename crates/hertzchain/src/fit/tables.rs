@@ -34,7 +34,7 @@ pub fn tables(fit_result: &FitResult, found: &Value) -> Vec<Table> {
 }
 
 /// Tables that any fit has, whose JSON is `found`.
-pub fn tables_of_any(found: &Value, more: &More) -> Vec<Table> {
+pub(crate) fn tables_of_any(found: &Value, more: &More) -> Vec<Table> {
     let parameters = list(&found["parameters"]);
     let text = |of: &Value, key: &str| of[key].as_str().unwrap_or_default().to_owned();
     let names: Vec<String> = parameters.iter().map(|of| text(of, "name")).collect();

@@ -1,5 +1,5 @@
 use super::*;
-use crate::options::ShotOptions;
+use crate::options::{Accuracy, ShotOptions};
 use crate::shot::PreparedShot;
 use hertzchain_chain::{Material, Sensor};
 use hertzchain_experiment::{Experiment, preset};
@@ -55,6 +55,24 @@ fn the_hardest_contact_of_the_dry_row_is_the_strikers_with_the_force_of_its_trac
     // A peak between samples is higher by less than this, and so is what a parabola leaves out.
     assert!((hardest.force_n / traced[0] - 1.0).abs() < 1e-3, "{hardest:?} {traced:?}");
     assert!(traced[1..].iter().all(|other| *other < hardest.force_n), "{traced:?}");
+}
+
+#[test]
+fn losses_press_no_contact() {
+    let row = preset("dry").unwrap();
+    let hardest = |accuracy| {
+        let options = ShotOptions { accuracy: Some(Accuracy(accuracy)), ..ShotOptions::at(3.0) };
+        let prepared = PreparedShot::new(&row, &options).unwrap();
+        let shot = prepared.run().unwrap();
+        HertzContact::hardest(shot.units, &shot.plan, &shot).unwrap()
+    };
+    let exact = hardest(1e-8);
+    // At touch the cubic law gives the striker's contact more force than any overlap does.
+    assert_eq!(exact.contact, 1);
+    for accuracy in [1e-4, 1e-6] {
+        let found = hardest(accuracy);
+        assert!((found.force_n / exact.force_n - 1.0).abs() < 10.0 * accuracy, "{found:?}");
+    }
 }
 
 #[test]

@@ -68,7 +68,7 @@ impl Verdict {
     pub fn sentence(&self) -> String {
         let names: Vec<&str> = self.allowed().map(|found| found.oil.as_str()).collect();
         match (&names[..], self.matches.first()) {
-            ([only], _) => format!("It is {only}: no other known oil gives these times."),
+            ([only], _) => format!("Of the known oils only {only} gives these times."),
             ([], None) => "None of the known oils could be computed.".to_owned(),
             ([], Some(nearest)) => format!(
                 "None of these: the nearest, {}, is off by {:.1} standard errors in the mean ({}).",

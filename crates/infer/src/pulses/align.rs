@@ -96,11 +96,13 @@ fn take_out(columns: &mut [Vec<f64>], from: &mut [f64]) -> (f64, f64) {
     last
 }
 
-/// A number for each mean, over its standard error.
+/// A number for each mean, over its standard error, with the noise made white.
 fn weighed(record: &Pulses, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
     let mut all = Vec::new();
     for (channel, (means, sigma)) in record.means_v.iter().zip(&record.sigma_v).enumerate() {
-        all.extend((0..means.len()).map(|at| value(channel, at) / sigma));
+        let mut own: Vec<f64> = (0..means.len()).map(|at| value(channel, at) / sigma).collect();
+        record.whitening[channel].apply(&mut own);
+        all.append(&mut own);
     }
     all
 }

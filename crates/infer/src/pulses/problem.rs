@@ -18,7 +18,7 @@ pub type Respond = fn(&Amplifier, &[f64], f64) -> Vec<f64>;
 /// Shots recorded sample by sample against those of a model.
 ///
 /// A residual is (mean of neighbouring samples − model's)/σ, σ from the noise
-/// before the pulses. Each record's offset, moment of impact and error of the
+/// before the pulses, made white by the autoregression that it has there. Each record's offset, moment of impact and error of the
 /// speed are at their best for every set of parameters.
 #[derive(Clone, Debug)]
 pub struct PulseProblem {
@@ -111,7 +111,7 @@ impl PulseProblem {
         let record = |of: &Pulses| {
             let times = [of.interval_s, of.start_s, of.passing_s];
             let speeds = (of.speed_m_s, of.programmed_m_s);
-            format!("{:?}", (speeds, times, of.width, &of.sigma_v, &of.means_v))
+            format!("{:?}", (speeds, times, of.width, (&of.sigma_v, &of.whitening), &of.means_v))
         };
         let records: Vec<String> = self.records.iter().map(record).collect();
         Fingerprint::of("pulse problem", &(self.model.inputs(&self.parameters), records))
@@ -140,7 +140,9 @@ impl PulseProblem {
         let sigma = of.sigma_v[channel];
         let mean_s = of.width as f64 * of.interval_s;
         let time = |at: usize| of.start_s - of.passing_s + (at as f64 + 0.5) * mean_s;
-        let model = |at: usize| of.means_v[channel][at] - sigma * found[before + at];
+        let mut left = found[before..before + count].to_vec();
+        of.whitening[channel].undo(&mut left);
+        let model = |at: usize| of.means_v[channel][at] - sigma * left[at];
         Ok([
             (0..count).map(time).collect(),
             of.means_v[channel].clone(),

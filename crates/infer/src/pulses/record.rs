@@ -19,6 +19,72 @@ const PER_FLIGHT: f64 = 300.0;
 /// Quiet samples that determine a channel's offset and noise.
 const QUIET: usize = 32;
 
+/// Highest order of the autoregression of a record's noise, quiet means that determine one, and standard errors
+/// by which its last coefficient differs from 0.
+const MOST_ORDER: usize = 10;
+const FOR_ONE: usize = 16;
+const CLEAR: f64 = 3.0;
+
+/// Makes correlated noise white: the error of the prediction of a mean from those before it, by
+/// autoregressions of the orders 0, 1, …, each with its error over the noise [Durbin1960].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Whitening(Vec<(Vec<f64>, f64)>);
+
+impl Whitening {
+    /// Of noise like these means.
+    fn of(quiet: &[f64]) -> Self {
+        let count = quiet.len() as f64;
+        let mean = quiet.iter().sum::<f64>() / count;
+        let lagged = |k: usize| -> f64 {
+            let pairs = quiet.iter().zip(quiet.iter().skip(k));
+            pairs.map(|(a, b)| (a - mean) * (b - mean)).sum()
+        };
+        let mut all: Vec<(Vec<f64>, f64)> = vec![(Vec::new(), 1.0)];
+        let mut order = 0;
+        for m in 1..=MOST_ORDER.min(quiet.len() / FOR_ONE) {
+            let (before, error) = &all[m - 1];
+            let known: f64 = before.iter().zip((1..m).rev()).map(|(a, k)| a * lagged(k)).sum();
+            let own = (lagged(m) - known) / (lagged(0) * error * error);
+            if own.is_nan() || own.abs() >= 1.0 {
+                break;
+            }
+            let reversed = before.iter().rev();
+            let mut next: Vec<f64> =
+                before.iter().zip(reversed).map(|(a, b)| a - own * b).collect();
+            next.push(own);
+            let error = error * (1.0 - own * own).sqrt();
+            if own.abs() > CLEAR / count.sqrt() {
+                order = m;
+            }
+            all.push((next, error));
+        }
+        all.truncate(order + 1);
+        Self(all)
+    }
+
+    /// The prediction of a value from those before it, and its error.
+    fn predicted(&self, values: &[f64], at: usize) -> (f64, f64) {
+        let (of, error) = &self.0[at.min(self.0.len() - 1)];
+        let before = values[..at].iter().rev();
+        (of.iter().zip(before).map(|(a, value)| a * value).sum(), *error)
+    }
+
+    pub(super) fn apply(&self, values: &mut [f64]) {
+        for at in (0..values.len()).rev() {
+            let (predicted, error) = self.predicted(values, at);
+            values[at] = (values[at] - predicted) / error;
+        }
+    }
+
+    /// The values of which [`Self::apply`] made these.
+    pub(super) fn undo(&self, values: &mut [f64]) {
+        for at in 0..values.len() {
+            let (predicted, error) = self.predicted(values, at);
+            values[at] = values[at] * error + predicted;
+        }
+    }
+}
+
 /// The samples of one shot around its pulses, as means of neighbours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pulses {
@@ -39,6 +105,8 @@ pub struct Pulses {
     pub means_v: Vec<Vec<f64>>,
     /// Standard error of each channel's means in V.
     pub sigma_v: Vec<f64>,
+    /// What makes each channel's noise white.
+    pub(super) whitening: Vec<Whitening>,
     /// When the incident pulse is highest, in s from the record's beginning.
     pub passing_s: f64,
     /// Its height in V.
@@ -74,6 +142,7 @@ impl Pulses {
             start_s: from as f64 * interval_s,
             means_v: Vec::new(),
             sigma_v: Vec::new(),
+            whitening: Vec::new(),
             passing_s: flight.picks.incident.time_s,
             height_v: flight.picks.incident.height,
         };
@@ -88,6 +157,9 @@ impl Pulses {
             };
             pulses.means_v.push(window.chunks_exact(width).map(mean).collect());
             pulses.sigma_v.push(sigma_v);
+            let quiet = samples.get(..up.baseline.quiet_samples).unwrap_or(&[]);
+            let quiet: Vec<f64> = quiet.chunks_exact(width).map(mean).collect();
+            pulses.whitening.push(Whitening::of(&quiet));
         }
         Ok(pulses)
     }

@@ -99,7 +99,17 @@ impl SampleTable {
             1 if options.channels.is_empty() => vec![0],
             _ => chosen(file, &names, options)?,
         };
-        let are_assumed = options.rows == Rows::Auto && axes.shots == Some(1);
+        let note = match axes.shots.filter(|_| options.rows == Rows::Auto) {
+            Some(1) => Some(format!(
+                "each of the {rows} columns, of {frames} samples, was taken for a shot; --rows \
+                 times or --channel says that they are channels"
+            )),
+            Some(0) if rows == 2 => Some(format!(
+                "each of the 2 rows, of {frames} samples, was taken for a shot; --rows channels \
+                 says that they are two sensors of one"
+            )),
+            _ => None,
+        };
         let head = Head {
             file: file.to_owned(),
             part,
@@ -107,12 +117,7 @@ impl SampleTable {
             interval_s,
             rows,
             frames,
-            note: are_assumed.then(|| {
-                format!(
-                    "each of the {rows} columns, of {frames} samples, was taken for a shot; --rows \
-                     times or --channel says that they are channels"
-                )
-            }),
+            note,
         };
         Ok(Self { axes, chosen, head })
     }

@@ -9,6 +9,7 @@ use crate::records::read::Raw;
 use crate::records::record::{Samples, converter_range_v};
 use crate::records::series;
 use crate::records::stored::{NumberKind, StoredNumber};
+use crate::records::text::volts;
 use indexmap::{IndexMap, IndexSet};
 use rust_hdf5::format::FormatContext;
 use rust_hdf5::format::messages::attribute::AttributeMessage;
@@ -214,7 +215,14 @@ impl Arrays for Datasets {
     }
 
     fn values(&self, name: &str) -> Result<Vec<f64>> {
-        let values = self.dataset(name)?.read_numeric_as::<f64>();
+        let dataset = self.dataset(name)?;
+        let values = match dataset.datatype() {
+            Ok(DatatypeMessage::FixedPoint { .. }) => {
+                let whole = dataset.read_numeric_as::<i64>();
+                whole.map(|whole| whole.into_iter().map(|number| number as f64).collect())
+            }
+            _ => dataset.read_numeric_as::<f64>(),
+        };
         values.map_err(|error| refused(&self.file, name, &error))
     }
 
@@ -224,9 +232,15 @@ impl Arrays for Datasets {
         let part = Some(name.to_owned());
         let SampleTable { axes, chosen, head } =
             SampleTable::new(&self.file, part, &shape, interval_s, options)?;
+        let number = |attr: &str| attribute(&dataset, attr).ok();
+        let unit_v = self.unit(name).and_then(|unit| volts(&unit)).unwrap_or(1.0);
+        let scale = (
+            unit_v * number("scale_factor").unwrap_or(1.0),
+            unit_v * number("add_offset").unwrap_or(0.0),
+        );
         let (file, name, of) = (self.file.clone(), name.to_owned(), (axes, self.by_matlab));
         Ok(head.records(options.parts, move |row, from, count| {
-            let one = |channel: &usize| slice(&dataset, of, (row, *channel), (from, count));
+            let one = |channel: &usize| slice(&dataset, of, scale, (row, *channel), (from, count));
             let taken: Result<_, _> = chosen.iter().map(one).collect();
             taken.map_err(|error| refused(&file, &name, &error))
         }))
@@ -267,6 +281,7 @@ impl Arrays for Datasets {
 fn slice(
     dataset: &H5Dataset,
     (axes, by_matlab): (Axes, bool),
+    (scale, offset): (f64, f64),
     (row, channel): (usize, usize),
     (from, count): (usize, usize),
 ) -> Result<Samples, Hdf5Error> {
@@ -283,11 +298,16 @@ fn slice(
     Ok(match dataset.datatype()? {
         DatatypeMessage::FixedPoint { size, signed, .. } => {
             let whole = dataset.read_numeric_slice_as::<i64>(&starts, &counts)?;
-            let volts: Vec<f64> = whole.into_iter().map(|number| number as f64).collect();
-            let range_v = (size == 2 && signed).then(|| converter_range_v(&volts, 1.0, 0.0));
+            let volts: Vec<f64> =
+                whole.into_iter().map(|number| number as f64 * scale + offset).collect();
+            let range_v = (size == 2 && signed).then(|| converter_range_v(&volts, scale, offset));
             (volts, range_v)
         }
-        _ => (dataset.read_numeric_slice_as::<f64>(&starts, &counts)?, None),
+        _ => {
+            let mut volts = dataset.read_numeric_slice_as::<f64>(&starts, &counts)?;
+            volts.iter_mut().for_each(|value| *value = *value * scale + offset);
+            (volts, None)
+        }
     })
 }
 

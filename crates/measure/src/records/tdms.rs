@@ -9,6 +9,7 @@ use crate::records::read::{Raw, or_error};
 use crate::records::stored::{
     Head, HeaderBytes, NumberKind, SampleRuns, StoredChannel, StoredNumber,
 };
+use crate::records::text::{seconds, volts};
 use indexmap::IndexMap;
 use std::collections::HashMap;
 use std::fs::File;
@@ -45,6 +46,8 @@ fn open_group(
     let reading = |cause| MeasureError::reading(file, cause);
     let mut opened = File::open(file).map_err(reading)?;
     let times = times(&mut opened, &channels, options);
+    let unit_s = |(name, of): (&String, &TdmsChannel)| Some((name.clone(), seconds(of.unit()?)?));
+    let units: HashMap<String, f64> = channels.iter().filter_map(unit_s).collect();
     if let Some((name, _)) = times.as_ref().filter(|_| options.channels.is_empty()) {
         channels.shift_remove(name);
     }
@@ -68,14 +71,17 @@ fn open_group(
         return Err(MeasureError::lengths(source, other.len(), frames, why));
     }
     let stated_s = names.iter().find_map(|name| channels[name].number("wf_increment"));
-    let own = times.and_then(|(name, step)| Some((name, arrays::step_s(step, options)?)));
-    let own = own.filter(|_| stated_s.is_none());
-    let note = own.as_ref().and_then(|(name, _)| seconds_assumed(name, None, options));
+    let own = times.filter(|_| stated_s.is_none()).and_then(|(name, step)| {
+        let unit_s = units.get(&name).copied();
+        let step_s = unit_s.map(|unit| unit * step).or_else(|| arrays::step_s(step, options));
+        Some((step_s?, seconds_assumed(&name, unit_s, options)))
+    });
+    let (own_s, note) = own.map_or((None, None), |(step_s, note)| (Some(step_s), note));
     let head = Head {
         file: file.to_owned(),
         part: Some(group),
         names,
-        interval_s: interval_s(file, stated_s.or(own.map(|(_, step_s)| step_s)), options)?,
+        interval_s: interval_s(file, stated_s.or(own_s), options)?,
         rows: 1,
         frames,
         note,
@@ -126,11 +132,19 @@ impl TdmsChannel {
         }
     }
 
+    fn unit(&self) -> Option<&str> {
+        match self.properties.get("unit_string") {
+            Some(Property::Text(unit)) => Some(unit),
+            _ => None,
+        }
+    }
+
     /// The stored numbers with the scales that make volts of them; what a scale is that is not
     /// known here.
     fn scaled(&self) -> Result<StoredChannel, String> {
         let mut stored = self.stored.clone();
-        let scales = self.scales()?;
+        let mut scales = self.scales()?;
+        scales.extend(self.unit().and_then(volts).map(|unit| vec![0.0, unit]));
         if scales.iter().any(|powers| powers.len() > 2) {
             stored.scales = scales;
             return Ok(stored);

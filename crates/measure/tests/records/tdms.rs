@@ -106,7 +106,8 @@ impl Writer {
 
     /// What a straight line makes volts of.
     fn linear(&mut self) {
-        self.put(6_u32.to_le_bytes());
+        self.put(7_u32.to_le_bytes());
+        self.word("unit_string", "mV");
         self.number("wf_increment", 2e-6);
         self.whole("NI_Number_Of_Scales", 2);
         self.word("NI_Scale[1]_Scale_Type", "Linear");
@@ -169,9 +170,11 @@ fn what_daq_cards_logged_is_read_and_scaled() {
     let records: Vec<_> = read(&path, &options).collect();
     let record = records[0].as_ref().unwrap();
     assert_eq!(record.interval_s, 2e-6);
+    let [bead_mv, wall_v] = volts_of_cards();
+    let near = |(volts, millivolts): (&f64, &f64)| (volts - 1e-3 * millivolts).abs() < 1e-15;
+    assert!(record.channels[0].volts.iter().zip(&bead_mv).all(near));
     // Halves and quarters are exact.
-    let found = [0, 1].map(|at: usize| record.channels[at].volts.clone());
-    assert_eq!(found, volts_of_cards());
+    assert_eq!(record.channels[1].volts, wall_v);
 }
 
 #[test]

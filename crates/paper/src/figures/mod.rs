@@ -318,7 +318,7 @@ pub fn oil_film_figure(of: &OilFilms) -> Figure {
         Chart::new("Striker speed $v_0$ (m/s)", ratio)
             .title(label(case))
             .x_log()
-            .y_range(0.88, 1.06)
+            .y_range(0.86, 1.06)
             .h_line(1.0, "")
             .with(Series::band("", &SPEEDS_M_S, &ends[0], &ends[1]).colour(colour))
             .with(line("film", film).marker(marker).dash(Dash::Solid))

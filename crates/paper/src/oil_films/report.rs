@@ -46,7 +46,10 @@ impl OilFilms {
 
     /// A column a model. A verdict of the film that its ranges flip is not decidable.
     fn claims(&self, page: &mut String) {
-        page.push_str("\n## What the paper says\n\n");
+        page.push_str(
+            "\n## What the paper says\n\nThe paper's materials are taken as printed here; `claims.md` draws their \
+             rounding, which leaves some of these claims not decidable.\n\n",
+        );
         let names = self.models.iter().map(|model| model.name.as_str());
         *page += &table_head(std::iter::once("claim").chain(names));
         for (at, first) in self.models[0].evaluated.iter().enumerate() {

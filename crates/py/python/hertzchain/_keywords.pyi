@@ -31,6 +31,19 @@ class SweepOptions(TypedDict, total=False):
     threads: Quantity | None
 
 
+class EnsembleOptions(TypedDict, total=False):
+    accuracy: Quantity | None
+    solver: Literal["adaptive", "rk4", "verlet"] | None
+    step: Quantity | None
+    duration: Quantity | None
+    pick: Literal["peak", "flank-10", "flank-50", "cross-correlation"] | None
+    check: bool
+    rebound: bool
+    error_control: Literal["per-shot", "calibrated", "none"]
+    threads: Quantity | None
+    speed: Quantity
+
+
 class MeasureOptions(TypedDict, total=False):
     rig: Path | None
     shots: Path | None

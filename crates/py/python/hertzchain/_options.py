@@ -34,7 +34,11 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 @lru_cache
 def declared(verb: str) -> dict[str, tuple[str, str | None, str]]:
     """Type, default and description of every option of a verb, by Python's names."""
-    return {NAMES.get(name, name): parts for name, *parts in _native.options(verb)}  # type: ignore[misc]
+    made = {NAMES.get(name, name): parts for name, *parts in _native.options(verb)}
+    if verb in ("ensemble", "distributed.sweep"):
+        # An array, which is an argument of its own.
+        made["speed"] = made.pop("speeds")
+    return made  # type: ignore[return-value]
 
 
 # Parameters of several functions: type and description; {} is what progress counts.
@@ -85,19 +89,15 @@ def _entries(described: Mapping[str, tuple[str, str]]) -> str:
 
 def _default(default: str | None) -> Any:
     """A default as Python writes it."""
-    if default in (None, "true", "false"):
-        return None if default is None else default == "true"
-    for number in (int, float):
-        try:
-            return number(default)
-        except ValueError:
-            pass
-    return tuple(default.split(",")) if "," in default else default
+    try:
+        return None if default is None else json.loads(default)
+    except ValueError:
+        return tuple(default.split(",")) if "," in default else default
 
 
 def text(verb: str, given: Mapping[str, Any], **more: Any) -> str:
     """Options as the extension reads them: JSON by the names in Rust."""
-    known = declared("sweep" if verb == "ensemble" else verb)
+    known = declared(verb)
     for name in given:
         if name not in known:
             near = get_close_matches(name, known, 1)

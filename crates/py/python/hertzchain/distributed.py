@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from dask.distributed import Client, Future
     from typing_extensions import Unpack
 
-    from ._keywords import SweepOptions
+    from ._keywords import EnsembleOptions
 
 __all__ = ["DistributedResult", "campaign", "fit", "sweep"]
 
@@ -153,11 +153,6 @@ def _written(work: _native.Run | _native.Likelihood, folder: Path) -> str:
     return str(path)
 
 
-def _threads(client: Client | None) -> int:
-    """Threads of a shard: one on a worker, whose threads compute a shard each; all (0) in process."""
-    return 0 if client is None else 1
-
-
 def _parts(most: int, least: int, client: Client | None) -> int:
     """Number of parts of work, at most ``most``, so that all threads of the workers have some."""
     threads = 0 if client is None else _cluster_threads(client) or UNKNOWN
@@ -194,7 +189,7 @@ def _outcomes(path: str, name: str, points: list[list[float]]) -> list[Any]:
     return _opened(path, name).outcomes(points)
 
 
-@options.with_options("sweep", "finished shards")
+@options.with_options("distributed.sweep", "finished shards")
 def sweep(
     experiment: Experiment | options.Path_,
     speed: ArrayLike | None = None,
@@ -204,7 +199,7 @@ def sweep(
     client: Client | None = None,
     shards: int | None = None,
     progress: object = None,
-    **how: Unpack[SweepOptions],
+    **how: Unpack[EnsembleOptions],
 ) -> DistributedResult:
     """Computes shots over arrays of speeds and of named numbers on a cluster.
 
@@ -236,14 +231,15 @@ def sweep(
     """
     experiment = opened(experiment)
     speeds, named = broadcast(experiment, speed, parameters)
-    run = _native.Run(experiment, speeds, list(named), list(named.values()), options.text("sweep", how))
+    run = _native.Run(experiment, speeds, list(named), list(named.values()), options.text("distributed.sweep", how))
     path = _written(run, Path(folder))
     if shards is None:
-        least = -(-speeds.size // SHOTS_A_SHARD)
-        shards = _cut(Path(folder), run.name) or _parts(speeds.size, least, client)
+        shards = _cut(Path(folder), run.name) or _parts(speeds.size, -(-speeds.size // SHOTS_A_SHARD), client)
     of = options.count("shards", shards, 1, MOST_SHARDS)
+    # A worker's threads compute a shard each; in this process all compute one (0).
+    threads = options.count("threads", how.get("threads"), 1) or int(client is not None)
     with options.progress(progress, of, "shard") as update:
-        kept, failed = _run_all(_shard, lambda number: (path, run.name, number, of, _threads(client)), of, client, update)
+        kept, failed = _run_all(_shard, lambda number: (path, run.name, number, of, threads), of, client, update)
     return DistributedResult(Path(folder), of, kept, failed, (run, experiment, speeds.shape, tuple(named)))
 
 
@@ -287,8 +283,10 @@ def campaign(
     experiment = opened(experiment)
     series = _native.campaign_series(experiment, options.text("campaign", {}, seed=seed))
     shards = _parts(series, 1, client) if shards is None else options.count("shards", shards, 1, MOST_SHARDS)
+    threads = int(client is not None)
     with options.progress(progress, shards, "shard") as update:
-        kept, failed = _run_all(_series, lambda number: (experiment, into, number, shards, seed, _threads(client)), shards, client, update)
+        arguments = lambda at: (experiment, into, at, shards, seed, threads)
+        kept, failed = _run_all(_series, arguments, shards, client, update)
     if len(failed) == shards:
         raise OptionError(next(iter(failed.values())))
     return DistributedResult(Path(out), shards, kept, failed)

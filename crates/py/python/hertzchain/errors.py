@@ -117,7 +117,7 @@ class MissingFileError(OptionError, FileNotFoundError):
 def existing(path: str | os.PathLike[str]) -> str:
     """A path of something that is there; ``-`` is standard input."""
     if not isinstance(path, (str, os.PathLike)):
-        raise OptionError(f"{type(path).__name__}: expected a path, or one array of shape (shots, samples)")
+        raise OptionError(f"{type(path).__name__}: expected a path, or one array of volts")
     if os.fspath(path) != "-" and not os.path.exists(path):
         raise MissingFileError(path)
     return os.fspath(path)

@@ -90,7 +90,8 @@ def fit(
         Speeds without errors, which are taken as exactly known; a model that is not named.
     """
     how = fit_options(how if client is None else {**how, "direct": True}, free)
-    options.count("points", points, 1)
+    if options.count("points", points, 1) and client is None:
+        raise OptionError("points is for fits on a cluster (client): leave it out")
     described = any(how.get(name) not in (None, ()) for name in ("shots", "rate", "channel"))
     files = _recordings(data, described)
     others = [(table(other), opened(chain)) for other, chain in also]
@@ -269,12 +270,8 @@ def csv(columns: Mapping[str, Any]) -> str:
     if {values.ndim for values in lists.values()} != {1} or len({values.size for values in lists.values()}) != 1:
         shapes = ", ".join(f"{name} {values.shape}" for name, values in lists.items())
         raise OptionError(f"columns must be of one length: {shapes or 'there are none'}")
-    return csv_text({name: [_cell(value) for value in values.tolist()] for name, values in lists.items()})
-
-
-def _cell(value: Any) -> Any:
-    """A text, or a number; nothing for NaN."""
-    return value if isinstance(value, (str, int)) else "" if np.isnan(number := float(value)) else number
+    # NaN alone is not equal to itself.
+    return csv_text({name: [one if one == one else "" for one in values.tolist()] for name, values in lists.items()})
 
 
 def modelled(model: Experiment | options.Path_ | None) -> Experiment:

@@ -10,7 +10,7 @@ a new figure in the style of this package, `STYLE`, which is there for other fig
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import wraps
 from inspect import signature
@@ -22,7 +22,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.colors import to_hex
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
 from ._options import with_options
@@ -40,9 +40,11 @@ STYLE = str(Path(__file__).with_name("hertzchain.mplstyle"))
 """Path of the style sheet."""
 
 MICRO, COLUMN = 1e6, 3.35
-MARKERS = ("o", "s", "^", "D", "v")
-ABOVE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2}
-OF_CASES = {"dry": "#000000", "pump": "#008a64", "gear": "#0060a6", "motor": "#ce5600"}
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "p")
+# Of incident and reflected curves: the first pair unless colours are equal.
+DASHES: Any = (("-", "--"), ("-.", ":"), ((0, (9, 2)), (0, (1, 4))))
+OF_CASES = {"": "#0072b2", "dry": "#000000", "pump": "#008a64", "gear": "#0060a6", "motor": "#ce5600"}
+OTHERS = ("#cc79a7", "#e69f00", "#56b4e9", "#882255", "#332288", "#999933", "#8c564b")
 
 
 def style() -> AbstractContextManager[None]:
@@ -85,9 +87,25 @@ def time_scale(dimensionless: bool) -> tuple[float, str]:
     return (1.0, "") if dimensionless else (MICRO, " (µs)")
 
 
-def colour_of(at: int, name: str = "") -> str:
-    """The program's colour of a case, else the style's: "C0" would be whichever is the first when the figure is saved."""
-    return OF_CASES.get(name.replace("-", " ").split(" ")[0], to_hex(f"C{at % 7}"))
+def colour_of(at: int) -> str:
+    """A colour of the style's: "C0" would be whichever is the first when the figure is saved."""
+    return to_hex(f"C{at % 7}")
+
+
+def looks_of(names: Iterable[str]) -> Iterator[tuple[str, str, Any]]:
+    """Colour, marker and dashes of cases: a colour follows from the name alone, by the program or by its letters."""
+    others = {name: OTHERS[sum(name.encode()) % len(OTHERS)] for name in names}
+    colours = [OF_CASES.get(name.replace("-", " ").split(" ")[0], other) for name, other in others.items()]
+    for at, colour in enumerate(colours):
+        yield colour, MARKERS[at % len(MARKERS)], DASHES[colours[:at].count(colour) % len(DASHES)]
+
+
+def legend_above(ax: Axes) -> None:
+    """A legend above the axes, in two columns if these are no wider."""
+    for columns in (2, 1):
+        legend = ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns)
+        if legend.get_window_extent().width < 1.05 * ax.bbox.width:
+            break
 
 
 @styled
@@ -172,17 +190,14 @@ def space_time(shot: Shot | Trace, kind: str = "contact", ax: Axes | None = None
         raise ValueError(f"a map needs several sensors of kind {kind!r}; the trace has {numbers.size}")
     ax = on_axes(ax, 2.7)
     scale, unit = time_scale(trace.dimensionless)
-    signed = bool(values.min() < -0.05 * values.max())
     most = float(np.abs(values).max())
-    colours: dict[str, Any] = {"cmap": "RdBu_r", "vmin": -most} if signed else {"vmin": 0.0}
+    colours: dict[str, Any] = {"cmap": "RdBu_r", "vmin": -most} if values.min() < -0.05 * most else {"vmin": 0.0}
     mesh = ax.pcolormesh(scale * trace.time_s, numbers, values, shading="nearest", rasterized=True, vmax=most, **colours)
     ax.grid(False)
     ax.set(xlabel=f"Time{unit}", ylabel="Contact" if kind == "contact" else "Bead")
     of = trace.units[f"{kind}_{numbers[0]}"]
     name = {"contact": "Force", "bead": "Force", "velocity": "Velocity", "position": "Displacement"}[kind]
-    figure = ax.get_figure()
-    if figure is not None:
-        figure.colorbar(mesh, ax=ax, label=name if of == "1" else f"{name} ({of})", pad=0.02)
+    ax.figure.colorbar(mesh, ax=ax, label=name if of == "1" else f"{name} ({of})", pad=0.02)
     return ax
 
 
@@ -232,12 +247,10 @@ def times_of_flight(
     named = curves if isinstance(curves, Mapping) else {"": curves}
     dimensionless = all(isinstance(curve, Sweep) and curve.dimensionless for curve in named.values())
     scale, unit = time_scale(dimensionless)
-    for at, (name, curve) in enumerate(named.items()):
-        colour = colour_of(at, name)
-        ends = [("incident", "tof_incident_s", "-", colour), ("reflected", "tof_reflected_s", "--", "none")]
-        for end, column, dashes, face in ends:
-            label = f"{name} {end}".strip()
-            _points(ax, curve, column, scale, color=colour, linestyle=dashes, marker=MARKERS[at % 5], markerfacecolor=face, label=label)
+    for (name, curve), (colour, marker, dashes) in zip(named.items(), looks_of(named), strict=True):
+        for end, dash, face in zip(("incident", "reflected"), dashes, (colour, "none"), strict=True):
+            look = {"color": colour, "linestyle": dash, "marker": marker, "markerfacecolor": face}
+            _points(ax, curve, f"tof_{end}_s", scale, label=f"{name} {end}".strip(), **look)
             law: PowerLaw | None = getattr(curve, f"power_law_{end}")
             if laws and law is not None:
                 known = curve._columns()["speed_m_s"]
@@ -248,14 +261,17 @@ def times_of_flight(
         ax.set(xscale="log", yscale="log")
         for axis in (ax.xaxis, ax.yaxis):
             plain_ticks(axis, (1.0, 2.0, 3.0, 5.0, 7.0))
-    ax.legend(**ABOVE)
+    legend_above(ax)
     return ax
 
 
 def plain_ticks(axis: Axis, steps: Sequence[float]) -> None:
-    """Ticks of a logarithmic axis at these steps of each decade, of two or more at its ends, as plain numbers."""
-    wide = np.ptp(np.log10(axis.get_view_interval())) > 2.0
-    axis.set_major_locator(LogLocator(subs=(1.0,) if wide else steps))
+    """Plain numbers as ticks of a logarithmic axis: decades, these steps of each, or even steps, at least three."""
+    low, high = axis.get_view_interval()
+    for locator in (LogLocator(), LogLocator(subs=steps), MaxNLocator(6, steps=(1, 2, 5, 10), min_n_ticks=3)):
+        axis.set_major_locator(locator)
+        if sum(low <= tick <= high for tick in axis.get_majorticklocs()) >= 3:
+            break
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 
@@ -317,7 +333,7 @@ def ratios(
     reference = dry._columns()
     order = np.argsort(reference["speed_m_s"])
     known = np.log(reference["speed_m_s"][order]), np.log(reference[column][order])
-    for at, (name, curve) in enumerate(wet.items()):
+    for (name, curve), (colour, marker, dashes) in zip(wet.items(), looks_of(wet), strict=True):
         speeds, own = (curve._columns()[of] for of in ("speed_m_s", column))
         times = _continued(np.log(speeds), *known)
         if beyond := int(np.isinf(times).sum()):
@@ -325,12 +341,11 @@ def ratios(
             warnings.warn(text, ExperimentWarning, stacklevel=3)
         ratio = own / np.exp(np.where(np.isinf(times), np.nan, times))
         error = ratio * np.hypot(_relative(curve, column), np.interp(np.log(speeds), known[0], _relative(dry, column)[order]))
-        bars, line = (None, "-") if isinstance(curve, Sweep) else (error, "none")
-        look = {"marker": (markers or {}).get(name, MARKERS[at % 5]), "color": colour_of(at, name), "linestyle": line}
-        ax.errorbar(speeds, ratio, bars, label=name, **look)
+        bars, line = (None, dashes[0]) if isinstance(curve, Sweep) else (error, "none")
+        ax.errorbar(speeds, ratio, bars, color=colour, marker=(markers or {}).get(name, marker), ls=line, label=name)
     ax.axhline(1.0, color="0.3", linewidth=0.6)
     ax.set(xlabel="Speed of the striker" + ("" if getattr(dry, "dimensionless", False) else " (m/s)"), ylabel=f"{end.capitalize()} ToF, wet / dry")
-    ax.legend(**ABOVE)
+    legend_above(ax)
     return ax
 
 
@@ -383,10 +398,9 @@ def fit(fitted: FitResult, axes: Sequence[Axes] | None = None) -> NDArray[Any]:
 
 
 def _model_curve(upper: Axes, lower: Axes, fitted: FitResult, observable: str, at: int) -> None:
-    own = fitted.rows["observable"] == observable
+    order = np.argsort(fitted.rows["speed_m_s"])
+    own = order[fitted.rows["observable"][order] == observable]
     rows = {name: values[own] for name, values in fitted.rows.items()}
-    order = np.argsort(rows["speed_m_s"])
-    rows = {name: values[order] for name, values in rows.items()}
     scale = MICRO if observable.startswith("tof") else 1.0
     colour, speeds = colour_of(at), rows["speed_m_s"]
     curve, spread = scale * rows["fitted"], scale * BAND * rows["fitted_error"]
@@ -437,8 +451,7 @@ def corner(fitted: FitResult, bins: int = 40, axes: NDArray[Any] | None = None) 
     ValueError
         Axes of another shape.
     """
-    names = list(fitted.parameters)
-    count = len(names)
+    count = len(fitted.parameters)
     if axes is None:
         side = max(COLUMN, 1.5 * count)
         axes = plt.subplots(count, count, figsize=(side, side), squeeze=False)[1]
@@ -488,8 +501,7 @@ def _pair(ax: Axes, fitted: FitResult, pair: tuple[int, int], bins: int) -> None
     if fitted.samples is not None:
         cells, x, y = np.histogram2d(fitted.samples[:, pair[0]], fitted.samples[:, pair[1]], bins=bins, range=ranges)
         ax.pcolormesh(x, y, cells.T, cmap="Blues", rasterized=True)
-    part = fitted.covariance[np.ix_(pair, pair)]
-    values, vectors = np.linalg.eigh(part)
+    values, vectors = np.linalg.eigh(fitted.covariance[np.ix_(pair, pair)])
     angle = np.linspace(0, 2 * np.pi, 200)
     circle = np.array([np.cos(angle), np.sin(angle)])
     # Radii that hold 68 % and 95 % of a normal distribution of two numbers.
@@ -503,18 +515,14 @@ def _pair(ax: Axes, fitted: FitResult, pair: tuple[int, int], bins: int) -> None
 
 def _corner_labels(ax: Axes, fitted: FitResult, place: tuple[int, int], count: int) -> None:
     row, column = place
-    parameters = list(fitted.parameters.values())
-
-    def label(at: int) -> str:
-        unit = parameters[at].unit.replace("^2", "²").replace("^3", "³")
-        return f"{parameters[at].name}\n({unit})" if unit else parameters[at].name
-
+    units = [one.unit.replace("^2", "²").replace("^3", "³") for one in fitted.parameters.values()]
+    labels = [f"{name}\n({unit})" if unit else name for name, unit in zip(fitted.parameters, units, strict=True)]
     if row == count - 1:
-        ax.set_xlabel(label(column))
+        ax.set_xlabel(labels[column])
     else:
         ax.tick_params(labelbottom=False)
     if column == 0 and row > 0:
-        ax.set_ylabel(label(row))
+        ax.set_ylabel(labels[row])
     elif column < row:
         ax.tick_params(labelleft=False)
     ax.locator_params(axis="x", nbins=3)

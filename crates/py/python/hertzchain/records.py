@@ -93,8 +93,8 @@ def measure(
     ----------
     records : path, iterable of paths, or ndarray
         Files (HDF5 of a campaign, text, NPY, NPZ, WAV, TDMS) or folders of them;
-        or volts as an array of shape (samples,) or (shots, samples), with ``rate``;
-        ``rows`` states what else rows of an array are.
+        or volts as an array, also of pandas, with ``rate``: (samples,), (shots, samples), (samples, channels) or
+        (shots, channels, samples); ``rows`` states what else rows are.
 
     Returns
     -------
@@ -112,9 +112,8 @@ def measure(
     ExperimentWarning
         Records that can't be read, or have no time of flight.
     """
-    if isinstance(records, np.ndarray) and records.ndim == 2 and how.get("rows") is None:
-        # The shape of an array of many short shots would mislead.
-        how["rows"] = "shots"
+    if getattr(records, "ndim", 0) == 2 and 64 <= records.shape[1] < records.shape[0] and not how.get("channel"):
+        how.setdefault("rows", "shots")
     asked = options.text("measure", how)
     with TemporaryDirectory(prefix="hertzchain-", ignore_cleanup_errors=True) as folder, options.progress(progress, None, "record") as update:
         found = _native.measure(_files(records, Path(folder)), asked, options.count("threads", threads), f"{folder}{os.sep}", update)
@@ -126,19 +125,17 @@ def measure(
 
 
 def _files(records: options.Path_ | Iterable[options.Path_] | NDArray[Any], folder: Path) -> list[str]:
-    if isinstance(records, np.ndarray):
-        records = options.unmasked(records)
-        if records.dtype.kind not in "fiu" or records.ndim not in (1, 2) or records.size == 0:
-            raise OptionError(f"records of {records.dtype} and shape {records.shape}: expected volts of shape (samples,) or (shots, samples)")
+    volts = options.unmasked(np.asanyarray(records)) if hasattr(records, "__array__") else None
+    if volts is not None and volts.dtype.kind not in "OUT":
+        if volts.dtype.kind not in "fiu" or volts.ndim not in (1, 2, 3) or volts.size == 0:
+            raise OptionError(f"records of {volts.dtype} and shape {volts.shape}: expected volts of one to three axes")
         path = folder / "array.npy"
         with open(path, "wb") as file:
             # Into anything but a file NumPy writes pieces, between which Ctrl-C works.
             pieces: Any = SimpleNamespace(write=file.write)
-            np.save(pieces, np.ascontiguousarray(records))
+            np.save(pieces, np.ascontiguousarray(volts))
         return [str(path)]
-    if isinstance(records, (str, os.PathLike)):
-        return [existing(records)]
-    return [existing(record) for record in records]
+    return [existing(record) for record in ([records] if isinstance(records, (str, os.PathLike)) else records)]
 
 
 def _case(raw: Mapping[str, Any]) -> Case:

@@ -315,8 +315,7 @@ class Shot(Result):
         pandas.Series
             By name, NaN where there is none; units in ``attrs["units"]``.
         """
-        table = super().to_pandas()
-        made = table.iloc[0].rename(self.experiment)
+        made = super().to_pandas().iloc[0].rename(self.experiment)
         made.attrs["units"] = self.units
         return made
 
@@ -675,7 +674,8 @@ class MeasureResult(Result):
 
     def _columns(self) -> dict[str, NDArray[Any] | list[str]]:
         titles, *rows = csv.reader(io.StringIO(self.tables["shots.csv"]))
-        return {title: _numbers([row[at] for row in rows]) for at, title in enumerate(titles)}
+        columns = {title: [row[at] for row in rows] for at, title in enumerate(titles)}
+        return {title: cells if title in TEXTS else _numbers(cells) for title, cells in columns.items()}
 
     def _coordinates(self) -> tuple[str, ...]:
         return ("speed_m_s",) if np.isfinite(np.asarray(self._columns()["speed_m_s"], float)).any() else ()
@@ -706,14 +706,15 @@ class MeasureResult(Result):
         return "Measured", rows | ({"refused": str(len(self.refused))} if self.refused else {})
 
 
-def _numbers(cells: list[str]) -> NDArray[Any] | list[str]:
-    """Cells of a column, with all their digits where they are numbers; NaN where they are empty."""
-    try:
-        if all(cell.isdigit() for cell in cells):
-            return np.array(cells, dtype=int)
-        return np.array([float(cell) if cell else np.nan for cell in cells])
-    except ValueError:
-        return cells
+TEXTS = ("file", "case", "counted", "not_counted_because", "flags")
+"""Columns of text, also where all cells are empty or digits."""
+
+
+def _numbers(cells: list[str]) -> NDArray[Any]:
+    """Cells of a column of numbers; NaN where they are empty."""
+    if all(cell.isdigit() for cell in cells):
+        return np.array(cells, dtype=int)
+    return np.array([float(cell) if cell else np.nan for cell in cells])
 
 
 @dataclass(frozen=True, repr=False)
@@ -872,13 +873,10 @@ class DesignResult(Result):
 
     def _summary(self) -> tuple[str, dict[str, str]]:
         rows = {one["measure"]: f"{short(one['information_nats'], 3)} nats" for one in self.ranked[:5]}
-        for key, title in NOT_IDENTIFIABLE.items():
+        # Null spaces of the data so far, and of all candidates.
+        for key, title in {"undetermined": "not determined", "not_identifiable": "not identifiable"}.items():
             rows |= {f"{title}, {at}": text for at, text in enumerate(self.details.get(key, ()), 1)}
         return f"Design for {', '.join(self.parameters)}: measure next", rows
-
-
-NOT_IDENTIFIABLE = {"undetermined": "not determined", "not_identifiable": "not identifiable"}
-"""Keys of ``design.json`` about null spaces: of the data so far, and of all candidates."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)

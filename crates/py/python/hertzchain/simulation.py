@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings as _warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from .results import Ensemble, Floats, Shot, Sweep, Trace, WarningSummary, power
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._keywords import ShotOptions, SweepOptions
+    from ._keywords import EnsembleOptions, ShotOptions, SweepOptions
 
 __all__ = ["ForceLaw", "ensemble", "shot", "sweep"]
 
@@ -128,6 +129,8 @@ def shot(
     asked = options.text("shot", how, speed=speed)
     laws = [law._native() for law in ([forces] if isinstance(forces, ForceLaw) else forces)]
     sensors, interval = _sensors(trace), None if interval_s is None else float(interval_s)
+    if sensors is None and interval is not None:
+        raise OptionError("interval_s is for the samples of a trace: give trace, or leave it out")
     with options.progress(progress, None, "step") as update:
         found = _native.shot(experiment, asked, None if sensors is None else (sensors, interval), laws, update)
     warnings = findings(found.pop("warnings"))
@@ -153,10 +156,9 @@ def _sensors(trace: bool | Iterable[Sensor]) -> list[tuple[str, int]] | None:
 
 def _sensor(sensor: Sensor) -> tuple[str, int]:
     kind, number = sensor.rpartition("_")[::2] if isinstance(sensor, str) else sensor
-    whole = int(number) if str(number).isdecimal() else -1
-    if whole < 0:
+    if not str(number).isdecimal():
         raise OptionError(f"{sensor!r} is no sensor; expected a kind and a number, such as bead_7")
-    return kind, whole
+    return kind, int(number)
 
 
 @options.with_options("sweep")
@@ -195,10 +197,11 @@ def sweep(
     """
     experiment = opened(experiment)
     values = _native.speeds(speeds) if isinstance(speeds, str) else _numbers("speeds", speeds)
-    if values.size > MOST_SPEEDS:
-        raise OptionError(f"{values.size} speeds: expected at most {MOST_SPEEDS}; `ensemble` takes more")
-    if values.ndim > 1:
-        raise OptionError(f"speeds of shape {values.shape}: expected one dimension; `ensemble` takes more")
+    # A letter behind a digit, but for that of an exponent.
+    if experiment.is_dimensionless and isinstance(speeds, str) and re.search(r"[\d.]\s*(?![eE][-+\d])[^\W\d_]", speeds):
+        raise OptionError(f"--speeds {speeds} has a unit, but the experiment is dimensionless; expected numbers: 0.5,1")
+    if values.ndim > 1 or values.size > MOST_SPEEDS:
+        raise OptionError(f"speeds, {values.shape}: expected one dimension, at most {MOST_SPEEDS}; see `ensemble`")
     values = np.ascontiguousarray(np.atleast_1d(values))
     with options.progress(progress, values.size, "shot") as update:
         found = _native.Run(experiment, values, [], [], options.text("sweep", how)).compute(True, update)
@@ -212,14 +215,14 @@ def sweep(
     )  # fmt: skip
 
 
-@options.with_options("sweep")
+@options.with_options("ensemble")
 def ensemble(
     experiment: Experiment | options.Path_,
     speed: ArrayLike | None = None,
     parameters: Mapping[str, ArrayLike] | None = None,
     *,
     progress: object = None,
-    **how: Unpack[SweepOptions],
+    **how: Unpack[EnsembleOptions],
 ) -> Ensemble:
     """Computes shots over arrays of speeds and of named numbers, at the engine's full speed.
 

@@ -64,6 +64,9 @@ pub(super) fn collision(chain: &Chain) -> Option<Group> {
     Some(group)
 }
 
+/// Shares below this are rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// Restitution of the striker and bead 1 alone, under the laws of contact 0:
 /// integrated, and by theory where they are elastic and viscoelastic.
 pub(super) fn restitution(chain: &Chain) -> Result<Option<Group>, StudyError> {
@@ -88,7 +91,10 @@ pub(super) fn restitution(chain: &Chain) -> Result<Option<Group>, StudyError> {
     match laws.laws.iter().all(elastic) {
         true => group.number(name, 1.0, ""),
         false => match parting_speed_m_s(pair)? {
-            Some(speed) => group.number(name, speed / speed_m_s, ""),
+            Some(speed) if speed > ROUNDING * speed_m_s => {
+                group.number(name, speed / speed_m_s, "");
+            }
+            Some(_) => group.text(name, "none: losses stop them before they part"),
             None => {
                 group.text(name, "none: forces still act across the gap long after the collision")
             }
@@ -107,7 +113,7 @@ pub(super) fn restitution(chain: &Chain) -> Result<Option<Group>, StudyError> {
             let series = restitution_by_series(collision.elastic.exponent, x);
             group.number("elastic and viscoelastic terms, series to x²", series, "");
         }
-        group.number("its parameter x = (3/2) A (K/m)^{2/5} v^{1/5}", x, "");
+        group.number("its parameter x = (3/2) A (K/m*)^{2/5} v^{1/5}", x, "");
     }
     Ok(Some(group))
 }
@@ -188,9 +194,15 @@ pub(super) fn profile(chain: &Chain) -> Option<Group> {
     with_wave(chain, |wave, _| {
         for half_beads in 0..=6 {
             let distance = 0.5 * f64::from(half_beads);
-            group.number(format!("force at {distance} beads"), wave.force_n(distance), "N");
-            let speed = wave.bead_speed_m_s(distance);
-            group.number(format!("bead speed at {distance} beads"), speed, "m/s");
+            let mut row = |name: &str, value: f64, most: f64, unit: &str| {
+                let name = format!("{name} at {distance} beads");
+                match value.abs() > ROUNDING * most {
+                    true => group.number(name, value, unit),
+                    false => group.text(name, format!("below {ROUNDING:e} of its peak")),
+                }
+            };
+            row("force", wave.force_n(distance), wave.peak_force_n(), "N");
+            row("bead speed", wave.bead_speed_m_s(distance), wave.peak_bead_speed_m_s(), "m/s");
         }
     })?;
     Some(group)

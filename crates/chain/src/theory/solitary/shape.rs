@@ -89,7 +89,7 @@ impl SolitaryShape {
 
     /// Mass of the particle with the wave's energy and momentum,
     /// P² / (2 E m), in beads \[Job2007\].
-    pub fn effective_mass(&self) -> f64 {
+    pub(crate) fn effective_mass(&self) -> f64 {
         self.solved.speed_squared * self.momentum().powi(2) / (2.0 * self.energy())
     }
 

@@ -17,11 +17,23 @@ use std::fmt::Write as _;
 use std::path::Path;
 use terminal_size::terminal_size_of;
 
+/// Files that every reproduction writes.
+const NAMES: [&str; 8] = [
+    "claims.md",
+    "claims.json",
+    "captions.md",
+    "tof.csv",
+    "ratios.csv",
+    "oils.csv",
+    "power_laws.csv",
+    "power_law_residuals.csv",
+];
+
 pub(crate) fn run(arguments: &Reproduce) -> Result<(), Failure> {
     // There is one paper: a folder of an earlier reproduction, which its provenance shows, gets the new one.
     let replace = arguments.force || arguments.out.join(PROVENANCE).exists();
     // Whether it can be written to, before anything is computed for it.
-    let mut folder = Folder::open(&arguments.out, &["claims.md"], replace)?;
+    let mut folder = Folder::open(&arguments.out, &NAMES, replace)?;
     let options = match arguments.readings {
         true => ReproduceOptions::default().with_readings(),
         false => ReproduceOptions::default(),
@@ -175,11 +187,12 @@ const ACCURACY: f64 = 1e-4;
 /// Shoots the rows and writes tables and picture; returns what was found, for people.
 fn run_films(into: &mut Folder, counter: &Counter) -> Result<String, Failure> {
     let films = OilFilms::compute(ACCURACY, counter).map_err(|error| failure(&error))?;
-    let page = films.markdown();
+    let figure = oil_film_figure(&films);
+    let caption = figure.caption_text();
+    let page = format!("{}\n## Picture oil_films\n\n{caption}\n", films.markdown());
     into.write("oil-films.md", page.as_bytes())?;
     into.write("oil-films.csv", films.csv().as_bytes())?;
     into.write("oil-films.json", format!("{:#}\n", films.json()).as_bytes())?;
-    let figure = oil_film_figure(&films);
     into.figure("oil_films", &figure)?;
     into.write("oil_films.pdf", &figure.pdf())?;
     Ok(format!("\n{page}"))

@@ -108,9 +108,13 @@ impl TextHeader {
         });
         let of_day = time.filter(|column| is_time_of_day(beginning, dialect, *column));
         let stated = time.filter(|_| of_day.is_none()).and_then(unit);
-        let volts = |column: &usize| prefixed(&unit(*column)?, VOLTS, VOLT_PREFIXES);
+        let of_title = |column: usize| volts(title(column).rsplit_once(APART)?.1);
+        let scale = |column: &usize| match unit(*column) {
+            Some(unit) => volts(&unit),
+            None => of_title(*column),
+        };
         Self {
-            scales: channels.iter().map(|column| volts(column).unwrap_or(1.0)).collect(),
+            scales: channels.iter().map(|column| scale(column).unwrap_or(1.0)).collect(),
             names: names.collect(),
             channels,
             time: time.map(|column| {
@@ -127,6 +131,11 @@ impl TextHeader {
 /// A unit of time in s.
 pub(crate) fn seconds(unit: &str) -> Option<f64> {
     prefixed(unit.trim().trim_end_matches('.'), SECONDS, PREFIXES)
+}
+
+/// A unit of voltage in V.
+pub(crate) fn volts(unit: &str) -> Option<f64> {
+    prefixed(unit.trim(), VOLTS, VOLT_PREFIXES)
 }
 
 fn prefixed(unit: &str, units: &[&str], prefixes: &[(&[&str], f64)]) -> Option<f64> {
@@ -216,7 +225,7 @@ fn without_mark<'a>(line: &'a str, dialect: &Dialect, counts: bool) -> &'a str {
 
 fn is_unit(field: &str) -> bool {
     let bracketed = field.starts_with(['(', '[']) && field.ends_with([')', ']']);
-    bracketed || seconds(field).is_some() || prefixed(field, VOLTS, VOLT_PREFIXES).is_some()
+    bracketed || seconds(field).is_some() || volts(field).is_some()
 }
 
 /// Name and unit of a title: "Time (ms)", "Zeit in ms".

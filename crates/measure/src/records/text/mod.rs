@@ -11,7 +11,7 @@ use crate::records::options::{ReadOptions, chosen};
 use crate::records::read::Raw;
 use dialect::Dialect;
 use header::TextHeader;
-pub(crate) use header::seconds;
+pub(crate) use header::{seconds, volts};
 use rows::{RowPlan, Segments};
 use std::borrow::Cow;
 use std::fs::File;

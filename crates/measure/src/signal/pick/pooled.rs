@@ -8,7 +8,7 @@
 
 use super::common_bell::CommonBell;
 use super::log_polynomial::{BellTop, NARROWER, ShapePrior, half_width};
-use super::{ChannelView, Picked, Systematic};
+use super::{ChannelView, Picked, Systematic, of_few_samples};
 use crate::signal::linear::{MOST, NormalEquations, powers};
 use crate::signal::{Estimate, MOST_POLES, Pulse, median};
 
@@ -310,7 +310,8 @@ impl Pool {
         let by_noise = place.variances[0].sqrt().hypot(open);
         // What a low-pass takes of a top goes as its curvature.
         let before = height * (top.log_gain / place.width.powi(2)).exp();
-        Picked {
+        let few_s = one.interval_s * of_few_samples(own.width_s / one.interval_s);
+        let picked = Picked {
             time_s: one.interval_s * (place.time + half * top.u + likely),
             sigma_s: (one.interval_s * by_noise.hypot(under)).hypot(one.of_drift_s),
             systematic: Systematic {
@@ -323,8 +324,8 @@ impl Pool {
             signal_to_noise: height / one.noise,
             misfit: (one.noise > 0.0).then_some((place.squares / place.freedom).sqrt()),
             ..*own
-        }
-        .above(one.under)
+        };
+        picked.widened(few_s).above(one.under)
     }
 }
 

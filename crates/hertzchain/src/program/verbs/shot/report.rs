@@ -67,7 +67,7 @@ fn flight(style: Style, shot: &Shot) -> Rows {
             shot.pulse_speed_beads_s.map(|speed| brief.quantity(speed, "beads/s")),
         ),
         ("striker when it first separates", shot.rebound.map(|it| first(it.first))),
-        ("striker at the end of the shot", shot.rebound.map(|it| end(it.end_s.zip(it.end_m_s)))),
+        ("striker when it last separates", shot.rebound.map(|it| end(it.end_s.zip(it.end_m_s)))),
     ]);
     if shot.flight.is_none() {
         let peaks = shot.sensor_maxima.iter().take(5);

@@ -17,6 +17,8 @@ fn a_column_of_times_is_told_by_name_unit_or_even_steps() {
     assert_eq!(slashed.time, Some((0, Some(1e-3))));
     let ending = header("time_us,a\n0.5,1\n1,2\n1.5,3\n");
     assert_eq!(ending.time, Some((0, Some(1e-6))));
+    let both = header("time_us,ch1_mV,ch2_V\n0.5,1,1\n1,2,1\n1.5,3,1\n");
+    assert_eq!(both.scales, [1e-3, 1.0]);
     assert_eq!(units.names, ["A", "B"]);
     let bare = header("0.000,5\n0.002,7\n0.004,1\n0.006,3\n");
     assert_eq!(bare.time, Some((0, None)));
