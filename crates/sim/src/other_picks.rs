@@ -22,7 +22,13 @@ pub(crate) struct OtherPick {
 const SHORTEST: f64 = 1e-3;
 
 /// Maxima that errors of heights could make the peak of a pulse.
-pub(crate) fn other_picks(seen: &Passages, passage: &Passage, system: &System) -> Vec<OtherPick> {
+///
+/// Errors of given steps go with the signal itself: where it is silent, they are none.
+pub(crate) fn other_picks(
+    seen: &Passages,
+    passage: &Passage,
+    (system, given_steps): (&System, bool),
+) -> Vec<OtherPick> {
     let largest = passage.incident.value.max(passage.wall.value);
     let pick =
         |(height, time_error): (f64, f64)| OtherPick { height_error: height / largest, time_error };
@@ -31,20 +37,26 @@ pub(crate) fn other_picks(seen: &Passages, passage: &Passage, system: &System) -
     // An error may rise to its whole size during the shortest contact.
     let flattest = flattest(&after, passage, system.scales().time_s);
     let slight = passage.reflected.map(|peak| (prominence(&after, peak), 1.0));
-    let faint =
-        (!system.flies_free()).then(|| faintest(seen.wall(), passage)).into_iter().flatten();
+    let faint = (!system.flies_free())
+        .then(|| faintest(seen.wall(), passage, given_steps))
+        .into_iter()
+        .flatten();
     as_high.chain(flattest).chain(slight).chain(faint).map(pick).collect()
 }
 
 /// By how much forces that a wall shows before the wave arrives, under load or through open contacts, are
 /// above or below the least height of a pulse, if their search would be over before the wall's peak.
-fn faintest(wall: &Signal, passage: &Passage) -> impl Iterator<Item = (f64, f64)> {
+fn faintest(
+    wall: &Signal,
+    passage: &Passage,
+    given_steps: bool,
+) -> impl Iterator<Item = (f64, f64)> {
     let (peak, until_s) = (passage.wall, passage.wall.time_s / WALL_WITHIN);
     // What is not kept, or is no maximum at looser steps, may be anything up to the error.
-    let silent = Maximum { time_s: until_s, value: 0.0 };
+    let silent = (!given_steps).then_some(Maximum { time_s: until_s, value: 0.0 });
     let early = wall.maxima().iter().copied().filter(move |it| it.time_s < until_s || *it == peak);
     let off = |it: Maximum| ((it.value - wall.least_height(it.time_s)).abs(), 1.0);
-    early.chain([silent]).map(off)
+    early.chain(silent).map(off)
 }
 
 /// By how much another maximum is lower, and how far away it is.

@@ -555,7 +555,9 @@ impl<'a> PreparedShot<'a> {
             false => Err(PassageError::NoWallPulse { duration_s: outcome.time_s }),
         };
         let seen = passage.as_ref().ok();
-        let other_picks = seen.map(|seen| other_picks(passages, seen, &self.system));
+        let given_steps = self.plan.method != SolverMethod::Adaptive;
+        let of = (&*self.system, given_steps);
+        let other_picks = seen.map(|seen| other_picks(passages, seen, of));
         let is_struck = matches!(self.plan.chain.start, Start::Striker { .. });
         // A shot that came to the end of the rule by another way than the striker's.
         let own_end = self.plan.rebound && self.plan.duration_s.is_none();

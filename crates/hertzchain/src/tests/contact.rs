@@ -61,7 +61,8 @@ fn the_hardest_contact_of_the_dry_row_is_the_strikers_with_the_force_of_its_trac
 fn losses_press_no_contact() {
     let row = preset("dry").unwrap();
     let hardest = |accuracy| {
-        let options = ShotOptions { accuracy: Some(Accuracy(accuracy)), ..ShotOptions::at(3.0) };
+        let mut options = ShotOptions::at(3.0);
+        options.how.accuracy = Some(Accuracy(accuracy));
         let prepared = PreparedShot::new(&row, &options).unwrap();
         let shot = prepared.run().unwrap();
         HertzContact::hardest(shot.units, &shot.plan, &shot).unwrap()

@@ -100,6 +100,13 @@ impl Detrended {
         let slope = self.fit.noise * self.fit.solution.variance(&row).sqrt() / self.half;
         time_error(slope, height, width)
     }
+
+    /// Standard error of a height there, as the baseline beneath it is open.
+    pub(super) fn height_error(&self, at: f64) -> f64 {
+        let mut row = powers((at - self.first as f64) / self.half);
+        row[self.fit.degree + 1..].fill(0.0);
+        self.fit.noise * self.fit.solution.variance(&row).sqrt()
+    }
 }
 
 /// By how much a slope beneath it moves a maximum of this height and width: slope over curvature,

@@ -238,8 +238,11 @@ fn with_drift(
             let of_tones = tones.as_ref().map_or(0.0, |it| it.time_error(at, pick.height, width));
             let error_s = of_drift.hypot(of_tones) * interval_s;
             pick.sigma_s = pick.sigma_s.hypot(error_s);
+            let of_drift = drift.as_ref().map_or(0.0, |it| it.height_error(at));
+            let error_v = of_drift.hypot(tones.as_ref().map_or(0.0, |it| it.height_error(at)));
+            pick.height_sigma = pick.height_sigma.hypot(error_v);
             if let Some(samples) = &mut samples[kind as usize] {
-                samples.of_drift_s = error_s;
+                (samples.of_drift_s, samples.of_drift_v) = (error_s, error_v);
             }
             picks.set(kind, pick);
         }
@@ -321,8 +324,9 @@ impl Flight {
 
     /// The part of that one's error which equal shots share.
     pub(crate) fn shared_height(&self, kind: PulseKind) -> Option<f64> {
-        let pulse = self.picks.pulse(kind)?;
-        Some(self.over_incident(kind)?.value * pulse.systematic.height / pulse.height)
+        let share = |pulse: Picked| pulse.systematic.height / pulse.height;
+        let shares = share(self.picks.pulse(kind)?).hypot(share(self.picks.incident));
+        Some(self.over_incident(kind)?.value * shares)
     }
 
     pub(crate) fn without_return(&self) -> Self {

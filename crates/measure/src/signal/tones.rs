@@ -89,6 +89,11 @@ impl Tones {
     pub(super) fn time_error(&self, at: f64, height: f64, width: f64) -> f64 {
         time_error(self.fit.slope_error((at - self.centre) / self.half) / self.half, height, width)
     }
+
+    /// Standard error of a height there, as the sines beneath it are open.
+    pub(super) fn height_error(&self, at: f64) -> f64 {
+        self.fit.value_error((at - self.centre) / self.half)
+    }
 }
 
 /// A sine over u from −1 to 1: cycles of a length of 1, and its parts.
@@ -151,6 +156,18 @@ impl ToneFit {
             noise: (squares / (count - numbers)).sqrt(),
             criterion: count * squares.max(f64::MIN_POSITIVE).ln() + numbers * count.ln(),
         })
+    }
+
+    /// Standard error of the sum of all sines at u.
+    fn value_error(&self, u: f64) -> f64 {
+        let (mut row, count) = ([0.0; UNKNOWNS], self.tones.len());
+        for (i, tone) in self.tones.iter().enumerate().filter(|(_, tone)| tone.cycles >= SLOWEST) {
+            let (sin, cos) = (2.0 * PI * tone.cycles * u).sin_cos();
+            row[SLOW + 2 * i] = cos;
+            row[SLOW + 2 * i + 1] = sin;
+            row[SLOW + 2 * count + i] = 2.0 * PI * u * tone.at(u)[1];
+        }
+        self.noise * self.solution.variance(&row).sqrt()
     }
 
     /// Standard error of the slope of all sines at u.

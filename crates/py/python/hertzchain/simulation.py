@@ -148,10 +148,9 @@ def _sensors(trace: bool | Iterable[Sensor]) -> list[tuple[str, int]] | None:
     """Sensors by kind and number; an empty list for the experiment's own."""
     if isinstance(trace, bool):
         return [] if trace else None
-    found = [_sensor(sensor) for sensor in ([trace] if isinstance(trace, str) else trace)]
-    if not found:
-        raise OptionError("trace names no sensor; True takes the experiment's own")
-    return found
+    if found := [_sensor(sensor) for sensor in ([trace] if isinstance(trace, str) else trace)]:
+        return found
+    raise OptionError("trace names no sensor; True takes the experiment's own")
 
 
 def _sensor(sensor: Sensor) -> tuple[str, int]:

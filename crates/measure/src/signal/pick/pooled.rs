@@ -51,6 +51,8 @@ pub struct PulseSamples {
     interval_s: f64,
     /// Error in s of its maximum's time by a fitted baseline.
     pub(crate) of_drift_s: f64,
+    /// The same of its height.
+    pub(crate) of_drift_v: f64,
 }
 
 impl PulseSamples {
@@ -75,6 +77,7 @@ impl PulseSamples {
             under: view.level_under(pulse, time),
             interval_s,
             of_drift_s: 0.0,
+            of_drift_v: 0.0,
         })
     }
 
@@ -317,10 +320,11 @@ impl Pool {
             systematic: Systematic {
                 superposition_s: -under * one.interval_s,
                 shape_s: self.shape * one.interval_s,
-                height: 0.0,
+                height: before * top.height_variance.sqrt(),
             },
             height: before,
-            height_sigma: before * (place.variances[1] + top.height_variance).sqrt(),
+            height_sigma: (before * (place.variances[1] + top.height_variance).sqrt())
+                .hypot(one.of_drift_v),
             signal_to_noise: height / one.noise,
             misfit: (one.noise > 0.0).then_some((place.squares / place.freedom).sqrt()),
             ..*own

@@ -226,7 +226,7 @@ impl Picked {
     pub(super) fn above(mut self, under: Estimate) -> Self {
         self.height -= under.value;
         self.height_sigma = self.height_sigma.hypot(under.sigma);
-        self.systematic.height = under.sigma;
+        self.systematic.height = self.systematic.height.hypot(under.sigma);
         self
     }
 }
