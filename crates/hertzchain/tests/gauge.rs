@@ -8,7 +8,10 @@ fn the_gauge_knows_its_oils_and_says_when_it_does_not() {
     let folder = folder("gauge");
     let (dry, pump) = (curve(&folder, "dry"), curve(&folder, "pump"));
     let found = json(&with_errors(&["gauge", &pump, "--dry", &dry, "--json"]));
-    assert!(found["verdict"].as_str().unwrap().starts_with("It is pump oil"), "{found}");
+    assert!(
+        found["verdict"].as_str().unwrap().starts_with("Of the known oils only pump oil"),
+        "{found}"
+    );
     // A dry chain's curve is that of no oil.
     let found = json(&with_errors(&["gauge", &dry, "--dry", &dry, "--json", "--use", "incident"]));
     assert!(found["verdict"].as_str().unwrap().starts_with("None of these"), "{found}");

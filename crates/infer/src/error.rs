@@ -20,7 +20,8 @@ pub enum InferError {
     },
     /// A free parameter that changes no residual.
     #[error(
-        "{name} changes no residual near {value:.4e}: keep it fixed, or measure something that depends on it"
+        "{name} changes no residual near {value:.4e}: keep it fixed, or measure something that depends on it; where a \
+         free number stands in its place (A for eta, K for Y), free that one alone"
     )]
     ChangesNothing {
         /// The parameter.

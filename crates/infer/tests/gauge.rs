@@ -44,7 +44,7 @@ fn each_oil_is_recognised_and_the_others_rejected() {
         let allowed: Vec<&str> = verdict.allowed().map(|found| found.oil.as_str()).collect();
         assert_eq!(allowed.len(), 1, "{name}: {verdict:?}");
         assert!(allowed[0].starts_with(called), "{name}: {allowed:?}");
-        assert!(verdict.sentence().starts_with("It is "));
+        assert!(verdict.sentence().starts_with("Of the known oils only "));
     }
 }
 
@@ -86,7 +86,7 @@ fn a_push_of_its_own_for_each_chain_finds_the_oil_that_the_files_push_hides() {
     assert!(sentence.starts_with("None of these"));
     assert!(doubts.unwrap().contains("--own near_end.force"));
     let (sentence, doubts) = said(&push);
-    assert!(sentence.starts_with("It is pump oil"));
+    assert!(sentence.starts_with("Of the known oils only pump oil"));
     assert_eq!(doubts, None);
 }
 

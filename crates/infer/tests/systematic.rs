@@ -130,6 +130,6 @@ fn the_gauge_names_the_oil_through_a_delay_that_it_is_told_of() {
     let known = [("delay".to_owned(), 3e-6)];
     for delay in [3e-6, -1e-6] {
         let sentence = verdict(&known, delay);
-        assert!(sentence.starts_with("It is motor oil"), "{delay}: {sentence}");
+        assert!(sentence.starts_with("Of the known oils only motor oil"), "{delay}: {sentence}");
     }
 }

@@ -38,7 +38,7 @@ pub(crate) fn fit<'py>(
     let tables = tables.into_iter().map(|(table, experiment)| (table, experiment.inner.clone()));
     let tables: Vec<_> = tables.collect();
     found(py, options, progress, |arguments| {
-        let problem = posed(&tables, arguments)?;
+        let problem = joint_problem(&tables, arguments)?;
         let fit_result = fitting::fit_result(problem, arguments)?;
         left(&fit_result.inferred, arguments)?;
         Ok(Found::of(&fit_result, arguments))
@@ -94,7 +94,7 @@ pub(crate) fn fit_pulses<'py>(
 }
 
 /// What is to be fitted to what.
-pub(crate) fn posed(
+pub(crate) fn joint_problem(
     tables: &[(Table, hertzchain_experiment::Experiment)],
     arguments: &Fit,
 ) -> Result<CurveProblem, Failure> {
@@ -105,7 +105,7 @@ pub(crate) fn posed(
         Ok((data(&table.0, &table.1, &arguments.measured, case)?, Clone::clone(experiment)))
     };
     let pairs = tables.iter().enumerate().map(pair).collect::<Result<Vec<_>, Failure>>()?;
-    hertzchain::inference::posed(&pairs, arguments)
+    hertzchain::inference::joint_problem(&pairs, arguments)
 }
 
 /// A fit as Python gets it.

@@ -2,7 +2,7 @@
 
 use crate::experiment::Experiment;
 use crate::failure::PyFailure;
-use crate::inference::{Found, Table, left, posed};
+use crate::inference::{Found, Table, joint_problem, left};
 use crate::job::Job;
 use crate::options::parsed;
 use hertzchain::failure::Failure;
@@ -63,7 +63,7 @@ impl Likelihood {
     fn new(table: Table, experiment: &Experiment, options: String) -> Result<Self, PyFailure> {
         let arguments: Fit = parsed("fit", &options)?;
         Ok(Self {
-            inner: posed(&[(table.clone(), experiment.inner.clone())], &arguments)?,
+            inner: joint_problem(&[(table.clone(), experiment.inner.clone())], &arguments)?,
             arguments,
             table,
             experiment: experiment.clone(),

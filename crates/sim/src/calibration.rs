@@ -31,7 +31,7 @@ const TIGHTER: f64 = 20.0;
 const MOST_HALVINGS: usize = 6;
 
 /// What batches need for calibration.
-const OF_UNIFORM: &str =
+const NOT_UNIFORM: &str =
     "calibration is for uniform rows that fly free, damped moderately, timed by peaks";
 
 /// Estimates are this many times the largest error over the condition of the calibration shots most
@@ -40,15 +40,15 @@ const MARGIN: f64 = 2.0;
 
 /// And so many times as large where reflected maxima compete, because what contacts do behind the pulse
 /// scatters errors: with 1.5, 3 of 601 shots of pump oil at 1e-6 were wrong by up to 1.4 times what was asked.
-const OF_COMPETING: f64 = 2.5;
+const COMPETING_MARGIN: f64 = 2.5;
 
 /// From 1e-5 on so many times where maxima that compete are much lower than the pulse: with 1, 5 of 2,001
 /// shots of 25 beads in gear oil were up to 1.15 times as wrong as they stated.
-const OF_LOWER: f64 = 1.5;
+const LOWER_MAXIMA_MARGIN: f64 = 1.5;
 
 /// And so many times as large where other numbers than the speed vary and less than 1e-5 is asked: with 1,
 /// 2 of 345 shots of a map of damping at 1e-6 were more wrong than they stated, by up to 1.13 times.
-const OF_MAPS: f64 = 1.25;
+const MAPS_MARGIN: f64 = 1.25;
 
 /// Below this accuracy errors of rows whose maxima compete, and of those in which other numbers than the speed
 /// vary, scatter more than calibration shots show: at 1e-7 14 of 1,501 shots of motor oil and 6 of 1,035 of maps
@@ -56,13 +56,13 @@ const OF_MAPS: f64 = 1.25;
 const LEAST_OF_SCATTERED: f64 = 1e-6;
 
 /// So many times their difference is at most what was asked.
-const OF_SECOND: f64 = 2.0;
+const SECOND_SETTING_FACTOR: f64 = 2.0;
 
 /// A peak whose interpolations differ by more than this many times what is usual has a kink near its
 /// top, or another maximum, and may be wrong by so many times what is above that: pump and motor oil,
 /// where two maxima become one.
-const OF_USUAL: f64 = 2.0;
-const OF_KINKS: f64 = 40.0;
+const KINK_THRESHOLD: f64 = 2.0;
+const KINK_ERROR_FACTOR: f64 = 40.0;
 
 /// Share of the accuracy asked by which interpolations of smooth peaks differ at most.
 const SMOOTH: f64 = 0.01;
@@ -72,14 +72,14 @@ const CONVERGED: f64 = 0.75;
 
 /// Halving a step leaves at most a quarter of an error: what that changes is three times what is
 /// left. Forces that begin or end within a step leave errors of order two.
-const OF_HALVING: f64 = 3.0;
+const HALVING_FACTOR: f64 = 3.0;
 
 /// Errors fall at most with this power of the step: settings that this shows to be too coarse
 /// are not tried.
 const HIGHEST_ORDER: f64 = 6.0;
 
 /// Two maxima of which one is lower by no more than this many errors of heights may change places.
-const OF_HEIGHTS: f64 = 4.0;
+const HEIGHT_MARGIN: f64 = 4.0;
 
 /// Two computations of a peak that differ by less than this many steps have the same peak.
 const SAME_PEAK: f64 = 1.0;
@@ -114,11 +114,11 @@ fn settings((end, longest_s): (End, f64)) -> Vec<Setting> {
 
 /// Cost of a step in double precision and of one that locates openings over that of a step in
 /// single precision.
-const OF_DOUBLE: f64 = 2.0;
-const OF_OPENINGS: f64 = 1.2;
+const DOUBLE_COST: f64 = 2.0;
+const OPENINGS_COST: f64 = 1.2;
 
 /// Cost of a shot that waits for whatever may come over that of one that ends with its pulse.
-const OF_WAITING: f64 = 1.8;
+const WAITING_COST: f64 = 1.8;
 
 /// Time at which a pulse has passed the sensor on its way back, in times from the wall's peak to it.
 const PASSED: f64 = 1.1;
@@ -138,7 +138,7 @@ const LEAST_WITHOUT_OPENINGS: f64 = 5e-5;
 
 /// Cost of a shot of the adaptive loop, with two more to compare with, in steps of single precision
 /// a contact time.
-const OF_ADAPTIVE: f64 = 5000.0;
+const ADAPTIVE_COST: f64 = 5000.0;
 
 /// Shots may last this many times as long as the longest calibration shot.
 const LONGEST: f64 = 1.5;
@@ -176,7 +176,7 @@ pub(crate) struct Tier {
     setting: Setting,
     places: Arc<Places>,
     /// Shots are right only where another setting agrees with them.
-    twice: bool,
+    needs_second: bool,
     /// One of each calibration shot.
     records: Vec<Record>,
     /// Relative error of a peak's height, with a margin.
@@ -229,18 +229,18 @@ impl Calibration {
         let all = plans.len();
         let uniform = |plan: &&Plan| suits(plan) && accuracy::is_uniform(plan);
         let plans: Vec<&Plan> = plans.iter().filter(uniform).collect();
-        let first = *plans.first().ok_or(OF_UNIFORM)?;
+        let first = *plans.first().ok_or(NOT_UNIFORM)?;
         let system = first.chain.system().map_err(|_| "no shot can be computed")?;
         let family = |plan: &&Plan| belongs(plan, (first, &system));
         if (plans.len() as f64) < CONVERGED * all as f64 || !plans.iter().all(family) {
-            return Err(OF_UNIFORM);
+            return Err(NOT_UNIFORM);
         }
         let own = Setting::of(first).ok_or("equal steps do not reach this accuracy")?;
         let shots = plans.len();
         let sample = Sample::new(plans, own, (by_speed, set))?;
         let mut chosen =
             Self { tiers: Vec::new(), first: (first.clone(), system), reached: 0.0, shots };
-        let mut rest = vec![OF_ADAPTIVE; shots];
+        let mut rest = vec![ADAPTIVE_COST; shots];
         for tried in sample.halved.iter().rev() {
             let trial = sample.trial(tried, &rest);
             if trial.expected < LESS * mean(&rest) {
@@ -257,11 +257,11 @@ impl Calibration {
         let mut tried = Vec::new();
         // First the cheapest that serves nearly all, then what is cheaper for some.
         if !sample.clear.contains(&false)
-            && let Some(trial) = sample.sooner(&rest, &mut tried, NEARLY_ALL)
+            && let Some(trial) = sample.cheaper_setting(&rest, &mut tried, NEARLY_ALL)
         {
             rest = chosen.add(trial);
         }
-        while let Some(trial) = sample.sooner(&rest, &mut tried, 0.0) {
+        while let Some(trial) = sample.cheaper_setting(&rest, &mut tried, 0.0) {
             rest = chosen.add(trial);
         }
         match chosen.tiers.is_empty() {
@@ -323,7 +323,7 @@ impl Record {
 
 /// How wrong a kink may make times of flight.
 fn kink(interpolation: f64, usual: f64) -> f64 {
-    OF_KINKS * (interpolation - OF_USUAL * usual).max(0.0)
+    KINK_ERROR_FACTOR * (interpolation - KINK_THRESHOLD * usual).max(0.0)
 }
 
 impl Tier {
@@ -345,14 +345,14 @@ impl Tier {
         let is_small = self.is_small(plan, shot);
         let own = shot.accuracy_reached.unwrap_or(f64::INFINITY);
         let agrees = |other: &Shot| {
-            let most = match self.twice {
-                true => shot.accuracy_asked / OF_SECOND,
+            let most = match self.needs_second {
+                true => shot.accuracy_asked / SECOND_SETTING_FACTOR,
                 false => own + other.accuracy_reached.unwrap_or(f64::INFINITY),
             };
             shot.change(other) <= most
         };
-        let agrees = other.map_or(!self.twice, agrees);
-        if self.twice && agrees {
+        let agrees = other.map_or(!self.needs_second, agrees);
+        if self.needs_second && agrees {
             // Two settings confirm the accuracy asked and no better one.
             shot.accuracy_reached = Some(own.max(shot.accuracy_asked));
         }
@@ -433,7 +433,7 @@ impl<'a> Sample<'a> {
             let [.., (_, coarse), (_, fine)] = &halved[..] else { break };
             let smooth = |(coarse, fine): (&Option<Shot>, &Option<Shot>)| {
                 let (coarse, fine) = (coarse.as_ref()?, fine.as_ref()?);
-                let error = fine.change(coarse) / OF_HALVING;
+                let error = fine.change(coarse) / HALVING_FACTOR;
                 (is_smooth(coarse) && is_smooth(fine)).then(|| (fine.clone(), error))
             };
             let mut exact: Vec<Option<(Shot, f64)>> = coarse.iter().zip(fine).map(smooth).collect();
@@ -494,14 +494,14 @@ impl<'a> Sample<'a> {
             shot.has_peaks_of(exact, SAME_PEAK).then(|| (shot, shot.change(exact) + error))
         };
         let by_speed = self.places.by_speed;
-        let of_maps = if !by_speed && accuracy < 1e-5 { OF_MAPS } else { 1.0 };
+        let of_maps = if !by_speed && accuracy < 1e-5 { MAPS_MARGIN } else { 1.0 };
         let record = |at: usize| {
             let near = self.places.near(at);
             let clear = accuracy >= 1e-5 && near.iter().all(|&at| self.clear[at]);
             let competing = match setting.end {
                 End::Passed => 1.0,
-                _ if clear => OF_LOWER,
-                _ => OF_COMPETING,
+                _ if clear => LOWER_MAXIMA_MARGIN,
+                _ => COMPETING_MARGIN,
             };
             let margin = competing * of_maps * MARGIN;
             let known = near.iter().filter_map(|&at| shots[at].as_ref());
@@ -520,15 +520,21 @@ impl<'a> Sample<'a> {
         Tier {
             setting: *setting,
             places: Arc::clone(&self.places),
-            twice: accuracy < LEAST_OF_SCATTERED && (!by_speed || self.clear.contains(&false)),
+            needs_second: accuracy < LEAST_OF_SCATTERED
+                && (!by_speed || self.clear.contains(&false)),
             records: (0..shots.len()).map(record).collect(),
-            height_error: OF_HEIGHTS * heights.fold(rest, f64::max),
+            height_error: HEIGHT_MARGIN * heights.fold(rest, f64::max),
         }
     }
 
     /// The setting that makes shots cheapest in front of others with which each costs `rest`, of
     /// those that are right enough for a least share of them.
-    fn sooner(&self, rest: &[f64], tried: &mut Vec<Tried>, least_share: f64) -> Option<Trial> {
+    fn cheaper_setting(
+        &self,
+        rest: &[f64],
+        tried: &mut Vec<Tried>,
+        least_share: f64,
+    ) -> Option<Trial> {
         let end = self.halved.last().map_or(End::Reflected, |(setting, _)| setting.end);
         // Steps too long for strong losses make motion that never ends.
         let durations_s = self.exact.iter().flatten().map(|(shot, _)| shot.duration_s);
@@ -652,11 +658,11 @@ fn last_watched(shot: &Shot) -> f64 {
 
 /// Cost of a shot, in steps of single precision a contact time.
 fn cost(setting: &Setting) -> f64 {
-    let double = if setting.precision == Some(Precision::Single) { 1.0 } else { OF_DOUBLE };
-    let openings = if setting.openings { OF_OPENINGS } else { 1.0 };
+    let double = if setting.precision == Some(Precision::Single) { 1.0 } else { DOUBLE_COST };
+    let openings = if setting.openings { OPENINGS_COST } else { 1.0 };
     let waiting = match setting.end {
         End::Behind(ways) => (1.0 + ways) / (1.0 + PASSED),
-        End::Reflected => OF_WAITING,
+        End::Reflected => WAITING_COST,
         End::Passed | End::Duration => 1.0,
     };
     double * openings * waiting / setting.step

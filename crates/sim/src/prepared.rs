@@ -32,7 +32,7 @@ const OF_HEIGHTS: f64 = 30.0;
 
 /// A bound on the error of a shot; where heights that are this wrong allow to pick another
 /// maximum, what that changes.
-fn standing(shot: &Shot, reached: f64, heights: f64) -> f64 {
+fn error_bound(shot: &Shot, reached: f64, heights: f64) -> f64 {
     let heights = heights.max(OF_HEIGHTS * shot.tolerance.unwrap_or(0.0));
     let possible = shot.other_picks.iter().filter(|pick| pick.height_error <= heights);
     possible.fold(reached, |reached, pick| reached.max(pick.time_error))
@@ -40,7 +40,7 @@ fn standing(shot: &Shot, reached: f64, heights: f64) -> f64 {
 
 /// A bound on what two runs that should be the same differ by.
 fn difference(shot: &Shot, other: &Shot) -> f64 {
-    standing(shot, shot.change(other), shot.height_change(other))
+    error_bound(shot, shot.change(other), shot.height_change(other))
 }
 
 /// Largest difference from equal steps, in accuracies asked, that confirms a shot: at 1, errors of
@@ -49,7 +49,7 @@ const CONFIRMING: f64 = 0.3;
 
 /// Whether heights as wrong as a shot's tolerance allow to pick another maximum.
 pub(crate) fn is_ambiguous(shot: &Shot) -> bool {
-    standing(shot, 0.0, 0.0) > shot.accuracy_asked
+    error_bound(shot, 0.0, 0.0) > shot.accuracy_asked
 }
 
 /// A run's tolerance and the run, if it has not failed.
@@ -246,7 +246,7 @@ impl<'a> PreparedShot<'a> {
         let changes: Vec<(f64, f64)> = changes.collect();
         let runs = looser.iter().filter_map(|(_, run)| run.as_ref());
         let heights = runs.map(|run| shot.height_change(run)).fold(f64::INFINITY, f64::min);
-        standing(shot, accuracy::estimated(&changes, of_plan, tolerance), heights)
+        error_bound(shot, accuracy::estimated(&changes, of_plan, tolerance), heights)
     }
 
     /// Largest relative difference of two runs; but for gentle rows of equal beads that of each peak's time
@@ -303,7 +303,7 @@ impl<'a> PreparedShot<'a> {
                 |other: &Option<Shot>| other.as_ref().map_or(0.0, |it| self.change(shot, it));
             let reached = accuracy::reached([change(&near), change(&far)], of_plan, tolerance);
             let heights = near.as_ref().map_or(0.0, |near| 2.0 * shot.height_change(near));
-            let reached = standing(shot, reached, heights);
+            let reached = error_bound(shot, reached, heights);
             let Some(next) =
                 near.filter(|_| reached > self.plan.accuracy && 0.1 * tolerance >= TIGHTEST)
             else {
@@ -356,7 +356,7 @@ impl<'a> PreparedShot<'a> {
         };
         let (times, heights) = (most(Shot::change), most(Shot::height_change));
         let reached = accuracy::reached([2.0 * times, 0.0], accuracy::margin(self.plan), 0.0);
-        let reached = standing(&shot, reached, 2.0 * heights);
+        let reached = error_bound(&shot, reached, 2.0 * heights);
         self.note_reached(&mut shot, reached);
         Ok(shot)
     }

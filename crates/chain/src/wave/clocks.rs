@@ -64,17 +64,17 @@ impl Wave<'_> {
         for _ in 0..6 {
             let step_s = self.slow.proposed_s(self.proposed_s).min(self.longest());
             self.compute_slow(step_s);
-            let Some(needy) = self.needy(step_s) else {
+            let Some(quick) = self.needs_short_steps(step_s) else {
                 if self.slow.lengthen() {
                     continue;
                 }
                 break;
             };
-            if self.slow.suits(&needy, &window) {
+            if self.slow.suits(&quick, &window) {
                 self.slow.begin((self.state.time_s, step_s), window);
                 return true;
             }
-            match LongStep::around(needy, &window, reaches) {
+            match LongStep::around(quick, &window, reaches) {
                 Some(quick) => self.slow.quick = quick,
                 None if self.slow.shorten() => {}
                 None => break,
@@ -85,7 +85,7 @@ impl Wave<'_> {
         false
     }
 
-    pub(super) fn needy(&self, step_s: f64) -> Option<Range<usize>> {
+    pub(super) fn needs_short_steps(&self, step_s: f64) -> Option<Range<usize>> {
         let (Some(weights), Control::Adaptive { tolerance }) = (&self.table.error, self.control)
         else {
             return None;

@@ -35,7 +35,7 @@ pub(super) struct Event {
 
 /// Looks for changes of mode at the end of a step.
 #[derive(Clone, Debug)]
-pub(super) struct GateWatch {
+pub(super) struct ChangeDetector {
     tolerance: f64,
     time_s: f64,
     /// Velocity change in m/s that is within a step's error.
@@ -72,7 +72,7 @@ const LEAST_CHANGE: f64 = 1e-6;
 /// Overlaps are differences of positions that are this uncertain.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-impl GateWatch {
+impl ChangeDetector {
     pub(super) fn new(system: &System, tolerance: f64) -> Self {
         let scales = system.scales();
         Self {

@@ -2,7 +2,7 @@
 
 use super::dense::{Piece, StageWeights};
 use super::forces::{Gates, Pass};
-use super::gate::{Event, GateWatch};
+use super::gate::{ChangeDetector, Event};
 use super::hardest::HardestContact;
 use super::meter::Meter;
 use super::outcome::{Flow, Limits, Observer, Outcome, SolveError, Work};
@@ -45,7 +45,7 @@ pub(super) struct Wave<'a> {
     pub(super) state: WaveState,
     pub(super) window: MovingBodies,
     pub(super) pass: Pass,
-    pub(super) watch: GateWatch,
+    pub(super) watch: ChangeDetector,
     pub(super) meter: Option<Meter>,
     hardest: Option<HardestContact>,
     /// The long step that slow bodies take beside short ones.
@@ -84,7 +84,7 @@ impl<'a> Wave<'a> {
             slow: LongStep::new(system, table.stages(), two_clocks),
             gates: if adaptive { Gates::Frozen } else { Gates::Instant },
             pass: Pass::new(system),
-            watch: GateWatch::new(system, tolerance),
+            watch: ChangeDetector::new(system, tolerance),
             meter: limits.budget.then(|| Meter::new(system, &state, table.stages())),
             hardest: limits.budget.then(|| HardestContact::new(system)),
             a: vec![bodies(); table.stages()],

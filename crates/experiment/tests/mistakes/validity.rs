@@ -121,7 +121,7 @@ fn a_viscosity_of_the_wrong_size_is_underlined_in_its_material() {
         &finding,
         line_of("shear_viscosity = "),
         "\"3.2e6 Pa s\"",
-        &["come apart", "A δ̇/δ small"],
+        &["less than half of their speed", "A δ̇/δ small"],
     );
 }
 

@@ -1,8 +1,8 @@
 //! Other models of the same data.
 
-use super::{asked, best_fit, finer};
+use super::{best_fit, finer, fit_settings};
 use crate::failure::Failure;
-use crate::inference::{self, is_meant, unit_changes, user, wanted};
+use crate::inference::{self, check_cancelled, is_meant, unit_changes, user};
 use crate::options::{
     Accuracy, Against, Assignment, FitOptions as Arguments, ParameterOptions as Freed,
 };
@@ -91,9 +91,10 @@ fn other(
         Failure::User(why) => Failure::User(format!("--against {name}: {why}")),
         other => other,
     };
-    let (posed, without) = posed(against, problem, arguments).map_err(of_rival)?;
-    let reported = unit_changes(posed.model(), &arguments.modelled.set);
-    let (posed, fit) = best_fit(posed, 0, &asked(arguments), finer).map_err(of_rival)?;
+    let (of_other, without) = other_problem(against, problem, arguments).map_err(of_rival)?;
+    let reported = unit_changes(of_other.model(), &arguments.modelled.set);
+    let (of_other, fit) =
+        best_fit(of_other, 0, &fit_settings(arguments), finer).map_err(of_rival)?;
     if !fit.ending.converged() {
         return Ok(Err(Unfitted {
             chi_square: fit.chi_square(),
@@ -101,14 +102,14 @@ fn other(
             name,
         }));
     }
-    let alternative = alternative(name.clone(), (&posed, &posed), fit, arguments.seed);
+    let alternative = alternative(name.clone(), (&of_other, &of_other), fit, arguments.seed);
     let alternative = alternative.map_err(of_rival)?;
     Ok(Ok(AlternativeModel { without, kept: reported, ..alternative }))
 }
 
 /// The same data against another model, in which everything is set and known that is
 /// in the fit's own, as far as it has such numbers; and settings that it has not.
-fn posed(
+fn other_problem(
     against: &Against,
     problem: &CurveProblem,
     arguments: &Arguments,
@@ -128,8 +129,8 @@ fn posed(
         let mut names = parameters.iter().map(|p| &p.name);
         names.any(|name| is_meant(&one.name, name)).then(|| one.clone())
     };
-    let posed = inference::problem(model, data, &freed.each(is_there))?;
-    Ok((posed, without))
+    let of_other = inference::problem(model, data, &freed.each(is_there))?;
+    Ok((of_other, without))
 }
 
 /// The experiment with those numbers set that it has, and the settings left out.
@@ -189,7 +190,7 @@ fn alternative(
     let foretells = enough(problem.data().rows.len(), fit.point.len())
         .then(|| cross_validate(kept, &fit, &how))
         .transpose();
-    wanted()?;
+    check_cancelled()?;
     let foretells = foretells.map_err(|error| Failure::User(format!("{name}: {error}")))?;
     Ok(AlternativeModel { name, fit, foretells, without: Vec::new(), kept: Vec::new() })
 }

@@ -2,7 +2,7 @@
 
 use super::{Arguments, Inferred, More};
 use crate::failure::Failure;
-use crate::inference::{user, wanted};
+use crate::inference::{check_cancelled, user};
 use crate::options;
 use hertzchain_infer::{Chain, Covariance, Fit, Problem, Sampling};
 use hertzchain_measure::records::write_whole;
@@ -97,12 +97,12 @@ pub(super) fn started(
     };
     let mut bytes = Vec::new();
     let read = fs::File::open(&path).and_then(|file| Wanted(file).read_to_end(&mut bytes));
-    wanted()?;
+    check_cancelled()?;
     read.map_err(|error| unread(&error))?;
     let damaged = || unread(&"damaged; remove it, or leave --resume out to begin anew");
     let text = checked(&bytes).ok_or_else(damaged)?;
     let read = serde_json::from_reader(BufReader::with_capacity(PIECE, Wanted(text)));
-    wanted()?;
+    check_cancelled()?;
     let chain: Chain = read.map_err(|error| unread(&error))?;
     chain.belongs_to(problem).map_err(|error| unread(&error))?;
     Ok(chain)
@@ -134,7 +134,7 @@ impl<'a> Saving<'a> {
     }
 
     pub(super) fn seen(&mut self, chain: &Chain) -> Result<(), Failure> {
-        wanted()?;
+        check_cancelled()?;
         note_progress(&format_args!(
             "posterior: {} of at most {} steps of {} walkers, {:.0} % of proposals accepted",
             chain.steps(),

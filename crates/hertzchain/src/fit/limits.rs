@@ -2,7 +2,7 @@
 
 use super::More;
 use crate::failure::Failure;
-use crate::inference::wanted;
+use crate::inference::check_cancelled;
 use hertzchain_infer::{
     Covariance, End, Fit, Identifiability, Parameter, Problem, Profile, Profiling, profile,
 };
@@ -56,7 +56,7 @@ pub(super) fn limits(
         More::Profiles(profiles) => profiles,
         _ => {
             let found = profile(problem, fit, covariance, &held, &Profiling::default());
-            wanted()?;
+            check_cancelled()?;
             match found {
                 Err(error) => return Ok(Err(error.to_string())),
                 Ok(found) => own = found,

@@ -20,7 +20,7 @@ pub use self::{
 };
 
 use crate::failure::Failure;
-use crate::inference::{self, user, wanted};
+use crate::inference::{self, check_cancelled, user};
 use crate::options::FitOptions as Arguments;
 use hertzchain_experiment::Experiment;
 use hertzchain_infer::{
@@ -200,7 +200,7 @@ const HARDLY_BETTER: f64 = 4.5;
 /// first is none to prefer: the first is what the model's own numbers lead to.
 fn best_of_starts(problem: &dyn Problem, nuisances: usize, how: &Fitting) -> Result<Fit, Failure> {
     let found = least_squares(problem, how);
-    wanted()?;
+    check_cancelled()?;
     let first = found.map_err(user)?;
     let one = how.starts == 1 && how.loss == Loss::Squares && first.point.len() <= FEW;
     if !one || !Goodness::with_nuisances(nuisances, problem, &first).is_rejected() {
@@ -208,7 +208,7 @@ fn best_of_starts(problem: &dyn Problem, nuisances: usize, how: &Fitting) -> Res
     }
     let starts = UNASKED;
     let found = least_squares(problem, &Fitting { starts, ..*how });
-    wanted()?;
+    check_cancelled()?;
     Ok(match found {
         Ok(found) if first.ending.converged() && first.cost - found.cost < HARDLY_BETTER => {
             Fit { starts: found.starts, ..first }
@@ -268,7 +268,7 @@ fn finer(problem: CurveProblem) -> CurveProblem {
     problem.with_accuracy(accuracy)
 }
 
-fn asked(arguments: &Arguments) -> Fitting {
+fn fit_settings(arguments: &Arguments) -> Fitting {
     Fitting {
         loss: match arguments.robust {
             true => Loss::Huber { scale: OUTLIER },
@@ -311,7 +311,7 @@ pub fn fit(
 /// # Errors
 /// As [`fit`].
 pub fn fit_tables(pairs: &[(Data, Experiment)], options: &Arguments) -> Result<FitResult, Failure> {
-    fit_result(inference::posed(pairs, options)?, options)
+    fit_result(inference::joint_problem(pairs, options)?, options)
 }
 
 /// Fits curves, determines the uncertainty as the method asks, and compares with
@@ -321,7 +321,7 @@ pub fn fit_tables(pairs: &[(Data, Experiment)], options: &Arguments) -> Result<F
 /// What is in the way of a fit.
 pub fn fit_result(problem: CurveProblem, arguments: &Arguments) -> Result<FitResult, Failure> {
     validation::of_table(arguments)?;
-    let (problem, fit) = best_fit(problem, 0, &asked(arguments), finer)?;
+    let (problem, fit) = best_fit(problem, 0, &fit_settings(arguments), finer)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
     let more = more::more(&problem, (&fit, &covariance), arguments)?;
     concluded(problem, None, (fit, covariance, more), arguments)
@@ -339,7 +339,7 @@ pub fn fit_from_other_starts(
     arguments: &Arguments,
 ) -> Result<FitResult, Failure> {
     validation::of_table(arguments)?;
-    let fit = best_of_starts(computed, 0, &asked(arguments))?;
+    let fit = best_of_starts(computed, 0, &fit_settings(arguments))?;
     let covariance = Covariance::new(computed.parameters(), &fit);
     let more =
         more::more_of(computed, computed, (&fit, &covariance), Curves::Computed(None), arguments)?;

@@ -3,7 +3,7 @@
 use super::Arguments;
 use super::checkpoint::{Saving, started};
 use crate::failure::Failure;
-use crate::inference::{user, wanted};
+use crate::inference::{check_cancelled, user};
 use crate::options::Method;
 use hertzchain_infer::{
     Chain, Covariance, CurveProblem, Fit, Posterior, Problem, Profile, Profiling, Requirements,
@@ -82,7 +82,7 @@ pub(super) fn more(
         }
         Err(error) => error.to_string(),
     };
-    wanted()?;
+    check_cancelled()?;
     let curves = Curves::Computed(Some(why));
     more_of(problem, problem, found, curves, arguments)
 }
@@ -101,7 +101,7 @@ pub(super) fn more_of(
             let all: Vec<usize> = (0..fit.point.len()).collect();
             let how = Profiling::default();
             let found = profile(exact, fit, covariance, &all, &how);
-            wanted()?;
+            check_cancelled()?;
             Ok(More::Profiles(found.map_err(user)?))
         }
         Method::Posterior => {

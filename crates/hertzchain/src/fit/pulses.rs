@@ -1,9 +1,9 @@
 //! Whole pulses of recordings to parameters.
 
-use super::{Curves, Inferred, asked, best_fit, inferred, joined, more, unasked};
+use super::{Curves, Inferred, best_fit, fit_settings, inferred, joined, more, unasked};
 use crate::csv::{self, columns, view};
 use crate::failure::Failure;
-use crate::inference::{self, user, wanted};
+use crate::inference::{self, check_cancelled, user};
 use crate::measure::{files, list};
 use crate::options::{Filter, FitOptions as Arguments};
 use hertzchain_experiment::{Amplifier as Numbers, Experiment};
@@ -90,7 +90,7 @@ fn records(
     let (mut good, mut refused) = (Vec::new(), Vec::new());
     for file in files(&arguments.data, recorded.shots.as_deref())?.0 {
         for record in read(&file, &reading) {
-            wanted()?;
+            check_cancelled()?;
             let record = match record {
                 Ok(record) => record,
                 Err(error) => {
@@ -166,7 +166,7 @@ pub fn fit_result(recorded: Recorded, arguments: &Arguments) -> Result<Pulsed, F
         let accuracy = 0.1 * problem.model.accuracy;
         problem.with_accuracy(accuracy)
     };
-    let (problem, fit) = best_fit(problem, nuisances, &asked(arguments), finer)?;
+    let (problem, fit) = best_fit(problem, nuisances, &fit_settings(arguments), finer)?;
     let covariance = Covariance::new(problem.parameters(), &fit);
     let how = Curves::Computed(None);
     let more = more::more_of(&problem, &problem, (&fit, &covariance), how, arguments)?;

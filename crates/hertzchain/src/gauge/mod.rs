@@ -6,7 +6,7 @@ mod tables;
 pub use self::{results::json, tables::tables};
 
 use crate::failure::Failure;
-use crate::inference::{self, user, wanted};
+use crate::inference::{self, check_cancelled, user};
 use crate::input::assumed_preset;
 use crate::options::GaugeOptions as Arguments;
 use hertzchain_experiment::Experiment;
@@ -65,16 +65,16 @@ pub fn gauge(
         accuracy: options.accuracy.0,
     };
     let gauge = Gauge::new(&chains, dry, wet);
-    wanted()?;
+    check_cancelled()?;
     let gauge = gauge.map_err(user)?;
     let rows = gauge.rows();
-    wanted()?;
+    check_cancelled()?;
     let film = (!options.film.is_empty()).then(|| gauge.film());
     let verdict = match &film {
         None => gauge.verdict(&oils),
         Some(_) => Ok(Verdict { matches: Vec::new(), failed: Vec::new() }),
     };
-    wanted()?;
+    check_cancelled()?;
     let film = film.transpose().map_err(user)?;
     Ok(GaugeResult { verdict: verdict.map_err(user)?, oils, rows, film, gauge })
 }

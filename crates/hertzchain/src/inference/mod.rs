@@ -20,8 +20,8 @@ use crate::options::{
 };
 use hertzchain_experiment::{Experiment, PathError, Units};
 use hertzchain_infer::{
-    CurveProblem, Data, FEWEST_SHOTS, FreeNumber, FreeNumbers, InferError, Model, Observable,
-    Problem, PulseProblem, Scatter, Selection,
+    CurveProblem, Data, DataRow, FEWEST_SHOTS, FreeNumber, FreeNumbers, InferError, Model,
+    Observable, Problem, PulseProblem, Scatter, Selection,
 };
 use hertzchain_measure::records::{peek, text};
 use hertzchain_sim::{StudyError, stopped};
@@ -39,7 +39,7 @@ pub fn user(error: impl std::fmt::Display) -> Failure {
 ///
 /// # Errors
 /// That it was broken off.
-pub fn wanted() -> Result<(), Failure> {
+pub fn check_cancelled() -> Result<(), Failure> {
     match stopped() {
         true => Err(user(StudyError::Stopped)),
         false => Ok(()),
@@ -128,6 +128,7 @@ pub(crate) fn assumed(data: &Data, measured: &Measured) -> Option<String> {
         exact_speeds(data, measured),
         few_shots(data),
         uncorrelated(data),
+        repeated(data),
         not_there(data, measured),
     ];
     let all: Vec<String> = all.into_iter().flatten().collect();
@@ -163,6 +164,19 @@ fn few_shots(data: &Data) -> Option<String> {
         "{}, {which}: errors from the scatter of fewer than {FEWEST_SHOTS} shots are themselves too uncertain to \
          correct for, and are taken as known: intervals are too narrow by an unknown factor. Shoot more, or take \
          errors over many rows (--error-shots known says that they are)",
+        data.file
+    ))
+}
+
+fn repeated(data: &Data) -> Option<String> {
+    let same = |pair: &&[DataRow]| {
+        (pair[0].speed_m_s, pair[0].values) == (pair[1].speed_m_s, pair[1].values)
+    };
+    let lines: Vec<u64> = data.rows.windows(2).filter(same).map(|pair| pair[1].line).collect();
+    let which = which(data, &lines)?;
+    Some(format!(
+        "{}, {which}: all numbers are those of another row: what was measured once counts twice, and standard errors \
+         come out too small; leave it out",
         data.file
     ))
 }
@@ -381,7 +395,10 @@ pub fn problem(model: Model, data: Data, freed: &Freed) -> Result<CurveProblem, 
 ///
 /// # Errors
 /// Options, data and models that do not fit together.
-pub fn posed(pairs: &[(Data, Experiment)], options: &FitOptions) -> Result<CurveProblem, Failure> {
+pub fn joint_problem(
+    pairs: &[(Data, Experiment)],
+    options: &FitOptions,
+) -> Result<CurveProblem, Failure> {
     let (modelled, freed) = (&options.modelled, &options.freed);
     needs_free(freed)?;
     if pairs.len() == 1 && !options.own.is_empty() {

@@ -76,6 +76,9 @@ pub(crate) fn is_list(list: Option<&Path>) -> impl Fn(&PathBuf) -> bool + use<> 
     move |file| list.is_some() && file.canonicalize().ok() == list
 }
 
+/// Tables of an earlier run, beside `measured.json`.
+const TABLES: [&str; 4] = ["shots.csv", "speeds.csv", "power-laws.csv", "ratios.csv"];
+
 /// What a folder has beside recordings; an instrument's binary file with how it is exported.
 pub(crate) type Others = Vec<(PathBuf, Option<String>)>;
 
@@ -89,9 +92,15 @@ pub(crate) fn recordings(folder: &Path) -> Result<(Vec<PathBuf>, Others), Failur
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         name.eq_ignore_ascii_case("readme")
     };
+    let is_measured = folder.join("measured.json").exists();
+    let is_table = |path: &Path| {
+        let name = path.file_name().and_then(|name| name.to_str());
+        is_measured && name.is_some_and(|name| TABLES.contains(&name))
+    };
     let (mut found, mut others) = (Vec::new(), Vec::new());
     for path in paths {
-        match if path.is_file() && !is_readme(&path) { is_recording(&path) } else { Err(None) } {
+        let may_be = path.is_file() && !is_readme(&path) && !is_table(&path);
+        match if may_be { is_recording(&path) } else { Err(None) } {
             Ok(()) => found.push(path),
             Err(export) => others.push((path, export)),
         }
@@ -165,7 +174,7 @@ impl MeasureResult {
     pub(crate) fn new(mut shots: Measurement, options: &Arguments) -> Result<Self, Failure> {
         suits(&shots)?;
         let curves = shots.curves(&grouping(options));
-        inference::wanted()?;
+        inference::check_cancelled()?;
         Ok(Self { shots, curves })
     }
 
@@ -210,7 +219,7 @@ pub fn measure_watched(
     let (files, notes) = files(records, options.shots.as_deref())?;
     let mut shots = hertzchain_measure::measure(&files, how, watch);
     shots.notes.splice(0..0, notes);
-    inference::wanted()?;
+    inference::check_cancelled()?;
     MeasureResult::new(shots, options)
 }
 

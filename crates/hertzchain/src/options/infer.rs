@@ -2,8 +2,8 @@
 
 use super::values::{pairs, some_speeds, texts};
 use super::{
-    Accuracy, Against, Also, Assignment, Cost, ErrorShots, Few, Frequency, Positive, Preload,
-    Speed, Threads, Time,
+    Accuracy, Against, Also, Assignment, Cost, ErrorShots, Frequency, Positive, Preload, Speed,
+    Threads, Time, UpTo1000,
 };
 use clap::Args;
 use hertzchain_infer::Observable;
@@ -181,7 +181,7 @@ pub struct FitOptions {
     pub robust: bool,
     /// Starts: the first as given, others spread over bounds and priors
     #[arg(long, value_name = "COUNT", default_value = "1", allow_hyphen_values = true)]
-    pub starts: Few,
+    pub starts: UpTo1000,
     /// Seed of all that is random
     #[arg(long, value_name = "NUMBER", default_value = "0", allow_hyphen_values = true)]
     pub seed: u64,
@@ -222,7 +222,7 @@ pub struct RecordOptions {
     pub filter: Option<Filter>,
     /// Most shots that are fitted, spread evenly over those that are good
     #[arg(long, value_name = "COUNT", default_value = "40", allow_hyphen_values = true)]
-    pub most_shots: Few,
+    pub most_shots: UpTo1000,
 }
 
 impl FitOptions {
@@ -340,7 +340,7 @@ pub struct DesignOptions {
     pub costs: Vec<Cost>,
     /// Length of the proposed series
     #[arg(long, value_name = "COUNT", default_value = "5", allow_hyphen_values = true)]
-    pub picks: Few,
+    pub picks: UpTo1000,
     /// Print JSON
     #[arg(long)]
     #[serde(skip_serializing)]

@@ -125,7 +125,7 @@ numbers! {
     /// A whole number from 1 on.
     Count(usize): "a whole number from 1 on", |text| whole(text, usize::MAX);
     /// A whole number from 1 to 1000.
-    Few(usize): "a whole number from 1 to 1000", |text| whole(text, 1000);
+    UpTo1000(usize): "a whole number from 1 to 1000", |text| whole(text, 1000);
     /// A speed in m/s that is not negative.
     Speed(f64): "a speed or 0, such as 0.7mm/s, or 7e-4 for m/s",
         |text| number(text, "m/s").filter(|speed| *speed >= 0.0);

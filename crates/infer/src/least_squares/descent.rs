@@ -349,8 +349,7 @@ impl<'a> Descent<'a> {
         match best {
             Some((i, valued)) if valued.cost < before => {
                 let gained = before - valued.cost;
-                let noticed = 1e-3 * fall.min(self.unit_cost());
-                self.idle = if gained < noticed { self.idle + 1 } else { 0 };
+                self.idle = if gained < 1e-3 * fall.min(1.0) { self.idle + 1 } else { 0 };
                 if fall < QUIET_FALL && gained < 0.1 * fall {
                     self.idle = IDLE;
                 }
@@ -371,17 +370,13 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// What counts as one of chi-square: far from the data it is large, and changes by its own share where
-    /// no conclusion does.
-    fn unit_cost(&self) -> f64 {
+    /// A rest where the cost should fall by so much: far from the data, chi-square is large and
+    /// changes by its own share where no conclusion does.
+    fn at_rest(&self, expected_fall: f64) -> Stage {
         let rows = self.at.as_ref().map_or(&[][..], |at| &at.rows);
         let freedom = rows.len().saturating_sub(self.free.len()).max(1);
-        (dot(rows, rows) / freedom as f64).max(1.0)
-    }
-
-    /// A rest where the cost should fall by so much.
-    fn at_rest(&self, expected_fall: f64) -> Stage {
-        Stage::Done(match expected_fall < SMALL_FALL * self.unit_cost() {
+        let reduced_chi_square = dot(rows, rows) / freedom as f64;
+        Stage::Done(match expected_fall < SMALL_FALL * reduced_chi_square.max(1.0) {
             true => Ending::Floor { expected_fall },
             false => Ending::Stuck { expected_fall },
         })

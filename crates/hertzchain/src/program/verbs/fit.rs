@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         [one] if inference::is_table(one, arguments.recorded.describes_files())? => one,
         _ => return pulses::run(arguments),
     };
-    let problem = inference::posed(&pairs(table, arguments)?, arguments)?;
+    let problem = inference::joint_problem(&pairs(table, arguments)?, arguments)?;
     for curve in &problem.curves {
         print_assumed(&curve.data, &arguments.measured);
     }
