@@ -41,6 +41,10 @@ impl Observer for Separation {
         if self.pressed && piece.is_open(0) {
             self.note((piece.start_s(), piece.body(0, 0.0).1));
         }
+        if piece.is_open(0) && !self.pressed {
+            self.at_end = None;
+            return Flow::Continue;
+        }
         let [before, (overlap, rate)] = [0.0, 1.0].map(|theta| piece.overlap(0, theta));
         self.pressed |= !piece.is_open(0) && (self.first.is_none() || before.0.max(overlap) > 0.0);
         let opened = self.pressed && overlap < 0.0;
