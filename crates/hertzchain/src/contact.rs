@@ -1,6 +1,6 @@
 //! Hertz's contact of two bodies at its highest pressure.
 
-use hertzchain_chain::{BeadPair, Chain};
+use hertzchain_chain::{BeadPair, Chain, Section};
 use hertzchain_experiment::Units;
 use hertzchain_sim::{Group, Plan, Row, Shot, Value};
 use serde::Serialize;
@@ -40,6 +40,12 @@ impl HertzContact {
     }
 
     fn of(units: Units, plan: &Plan, (contact, force_n): (usize, f64)) -> Option<Self> {
+        // Of a contact that has yielded Hertz's pressure is none.
+        let is_elastic = |section: &&Section| {
+            let mut laws = section.laws.iter();
+            section.contacts.contains(&contact) && laws.all(|law| !yields(law.info().name))
+        };
+        plan.chain.sections.iter().find(is_elastic)?;
         let pair = plan.chain.pair(contact).filter(|_| units == Units::Si)?;
         Self::new((contact, &pair), force_n)
     }
@@ -58,6 +64,10 @@ impl HertzContact {
             material_yield_strength_pa: pair.yield_strength_pa(),
         })
     }
+}
+
+fn yields(law: &str) -> bool {
+    law == "elastic_plastic_thornton"
 }
 
 /// Force at which the first ball of a contact yields, (π p₀ R*/1.5)³/K² with p₀ of first yield.

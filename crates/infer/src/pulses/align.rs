@@ -4,7 +4,7 @@
 //! its own. Least squares over both are least squares over θ of what the best n
 //! leave: r minus its part along the columns ∂r/∂n [GolubPereyra1973].
 
-use super::record::Pulses;
+use super::record::{BASELINE, Pulses};
 use crate::linear::dot;
 
 /// A model's signals in V, a row a channel, from the impact on.
@@ -56,9 +56,15 @@ fn at(record: &Pulses, traced: &Traced, shift_s: f64) -> (Vec<f64>, Correction) 
     let mut by_shift: Vec<f64> = by_shift.collect();
     let measured = weighed(record, |channel, at| record.means_v[channel][at]);
     let mut left: Vec<f64> = measured.iter().zip(&model).map(|(a, b)| a - b).collect();
-    let ones =
-        |own: usize| weighed(record, move |channel, _| if channel == own { 1.0 } else { 0.0 });
-    let mut columns: Vec<Vec<f64>> = (0..channels).map(ones).collect();
+    let baseline = |number: usize| {
+        let (own, power) = (number / BASELINE, (number % BASELINE) as i32);
+        let middle = 0.5 * record.means_v[own].len() as f64;
+        weighed(record, |channel, at| match channel == own {
+            true => ((at as f64 - middle) / middle).powi(power),
+            false => 0.0,
+        })
+    };
+    let mut columns: Vec<Vec<f64>> = (0..BASELINE * channels).map(baseline).collect();
     let error = record.ln_speed_error();
     if error > 0.0 {
         let mut by_speed = sampled(record, traced, &traced.by_ln_speed, shift_s);

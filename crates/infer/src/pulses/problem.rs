@@ -18,8 +18,9 @@ pub type Respond = fn(&Amplifier, &[f64], f64) -> Vec<f64>;
 /// Shots recorded sample by sample against those of a model.
 ///
 /// A residual is (mean of neighbouring samples − model's)/σ, σ from the noise
-/// before the pulses, made white by the autoregression that it has there. Each record's offset, moment of impact and error of the
-/// speed are at their best for every set of parameters.
+/// before the pulses, made white by the autoregression that it has there. Each record's baseline
+/// (offset, slope and curvature), moment of impact and error of the speed are at their best for
+/// every set of parameters.
 #[derive(Clone, Debug)]
 pub struct PulseProblem {
     /// The model.
@@ -117,7 +118,7 @@ impl PulseProblem {
         Fingerprint::of("pulse problem", &(self.model.inputs(&self.parameters), records))
     }
 
-    /// Numbers fitted to single records: offsets, moments and errors of speeds.
+    /// Numbers fitted to single records: baselines, moments and errors of speeds.
     pub fn nuisance_count(&self) -> usize {
         self.records.iter().map(Pulses::nuisance_count).sum()
     }

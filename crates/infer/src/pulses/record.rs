@@ -19,6 +19,13 @@ const PER_FLIGHT: f64 = 300.0;
 /// Quiet samples that determine a channel's offset and noise.
 const QUIET: usize = 32;
 
+/// Noise over the digitiser's step above which rounding is noise too, and least noise over the pulse's height.
+const DITHERED: f64 = 0.5;
+const LEAST_NOISE: f64 = 1e-9;
+
+/// Numbers of each channel's baseline: offset, slope and curvature.
+pub(super) const BASELINE: usize = 3;
+
 /// Highest order of the autoregression of a record's noise, quiet means that determine one, and standard errors
 /// by which its last coefficient differs from 0.
 const MOST_ORDER: usize = 10;
@@ -149,15 +156,20 @@ impl Pulses {
         for samples in volts {
             let samples = &without_spikes(samples).0[..];
             let up = normalisation(samples, Polarity::default()).map_err(|_| no_noise())?;
-            let sigma_v = sigma(&up, width).ok_or_else(no_noise)?;
             let window = samples.get(from..to.min(samples.len())).unwrap_or(&[]);
+            let step_v = step(window);
+            let sigma_v = sigma(&up, width, step_v);
+            let sigma_v = sigma_v.filter(|sigma| *sigma > LEAST_NOISE * pulses.height_v);
+            let sigma_v = sigma_v.ok_or_else(no_noise)?;
             let mean = |chunk: &[f64]| {
                 let sum: f64 = chunk.iter().map(|sample| up.height(*sample)).sum();
                 sum / width as f64
             };
             pulses.means_v.push(window.chunks_exact(width).map(mean).collect());
             pulses.sigma_v.push(sigma_v);
-            let quiet = samples.get(..up.baseline.quiet_samples).unwrap_or(&[]);
+            let is_dithered = up.baseline.noise >= DITHERED * step_v;
+            let quiet = samples.get(..up.baseline.quiet_samples).filter(|_| is_dithered);
+            let quiet = quiet.unwrap_or(&[]);
             let quiet: Vec<f64> = quiet.chunks_exact(width).map(mean).collect();
             pulses.whitening.push(Whitening::of(&quiet));
         }
@@ -183,7 +195,7 @@ impl Pulses {
 
     /// Numbers that are fitted to this record alone.
     pub(super) fn nuisance_count(&self) -> usize {
-        self.means_v.len() + 1 + usize::from(self.ln_speed_error() > 0.0)
+        BASELINE * self.means_v.len() + 1 + usize::from(self.ln_speed_error() > 0.0)
     }
 }
 
@@ -202,11 +214,22 @@ fn flight(source: &str, interval_s: f64, volts: &[Vec<f64>]) -> Result<Flight, I
     found.flight.map_err(named)
 }
 
-/// Standard error of a mean of so many samples: their noise, as much correlated as
-/// it is before the pulses, and the digitiser's steps.
-fn sigma(up: &Normalisation, width: usize) -> Option<f64> {
+/// The digitiser's step: the least difference of neighbours, if all are multiples of it.
+fn step(samples: &[f64]) -> f64 {
+    let differences = || samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let step = differences().filter(|off| *off > 0.0).fold(f64::INFINITY, f64::min);
+    let whole = |off: f64| (off / step - (off / step).round()).abs() < 0.01;
+    if differences().all(whole) { step } else { 0.0 }
+}
+
+/// Standard error of a mean of so many samples: their noise, as much correlated as it is before the
+/// pulses; without noise to dither the digitiser's steps, that of rounding, which no mean makes less.
+fn sigma(up: &Normalisation, width: usize, step_v: f64) -> Option<f64> {
     let noise = up.baseline.noise;
-    let known = up.baseline.quiet_samples >= QUIET && noise > 0.0 && noise.is_finite();
+    let known = up.baseline.quiet_samples >= QUIET && noise.is_finite();
     let over = up.baseline.correlation.clamp(1.0, width as f64) / width as f64;
-    known.then(|| noise * over.sqrt())
+    known.then(|| match noise < DITHERED * step_v {
+        true => noise.hypot(step_v / 12_f64.sqrt()),
+        false => noise * over.sqrt(),
+    })
 }
