@@ -1,5 +1,6 @@
 //! Hertz's contact of two bodies at its highest pressure.
 
+use hertzchain_chain::laws::Nature;
 use hertzchain_chain::{BeadPair, Chain, Section};
 use hertzchain_experiment::Units;
 use hertzchain_sim::{Group, Plan, Row, Shot, Value};
@@ -40,12 +41,15 @@ impl HertzContact {
     }
 
     fn of(units: Units, plan: &Plan, (contact, force_n): (usize, f64)) -> Option<Self> {
-        // Of a contact that has yielded Hertz's pressure is none.
-        let is_elastic = |section: &&Section| {
+        // The pressure of a contact that has yielded is not Hertz's.
+        let yields = |section: &Section| {
             let mut laws = section.laws.iter();
-            section.contacts.contains(&contact) && laws.all(|law| !yields(law.info().name))
+            let plastic = laws.any(|law| law.info().nature == Nature::ElasticPlastic);
+            section.contacts.contains(&contact) && plastic
         };
-        plan.chain.sections.iter().find(is_elastic)?;
+        if plan.chain.sections.iter().any(yields) {
+            return None;
+        }
         let pair = plan.chain.pair(contact).filter(|_| units == Units::Si)?;
         Self::new((contact, &pair), force_n)
     }
@@ -64,10 +68,6 @@ impl HertzContact {
             material_yield_strength_pa: pair.yield_strength_pa(),
         })
     }
-}
-
-fn yields(law: &str) -> bool {
-    law == "elastic_plastic_thornton"
 }
 
 /// Force at which the first ball of a contact yields, (π p₀ R*/1.5)³/K² with p₀ of first yield.

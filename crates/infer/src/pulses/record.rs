@@ -219,7 +219,7 @@ fn step(samples: &[f64]) -> f64 {
     let differences = || samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let step = differences().filter(|off| *off > 0.0).fold(f64::INFINITY, f64::min);
     let whole = |off: f64| (off / step - (off / step).round()).abs() < 0.01;
-    if differences().all(whole) { step } else { 0.0 }
+    if step.is_finite() && differences().all(whole) { step } else { 0.0 }
 }
 
 /// Standard error of a mean of so many samples: their noise, as much correlated as it is before the

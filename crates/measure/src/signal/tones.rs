@@ -160,12 +160,12 @@ impl ToneFit {
 
     /// Standard error of the sum of all sines at u.
     fn value_error(&self, u: f64) -> f64 {
-        let (mut row, count) = ([0.0; UNKNOWNS], self.tones.len());
-        for (i, tone) in self.tones.iter().enumerate().filter(|(_, tone)| tone.cycles >= SLOWEST) {
-            let (sin, cos) = (2.0 * PI * tone.cycles * u).sin_cos();
-            row[SLOW + 2 * i] = cos;
-            row[SLOW + 2 * i + 1] = sin;
-            row[SLOW + 2 * count + i] = 2.0 * PI * u * tone.at(u)[1];
+        let (mut row, count) = (row(&self.tones, u), self.tones.len());
+        // The cubic, and what is too slow, is left to the slow baseline.
+        row[..SLOW].fill(0.0);
+        for (i, _) in self.tones.iter().enumerate().filter(|(_, tone)| tone.cycles < SLOWEST) {
+            row[SLOW + 2 * i..][..2].fill(0.0);
+            row[SLOW + 2 * count + i] = 0.0;
         }
         self.noise * self.solution.variance(&row).sqrt()
     }
