@@ -248,6 +248,7 @@ fn shot_of(row: &Row, (samples, speed_m_s): &(Vec<Vec<f64>>, f64), fault: &Fault
         gaps: None,
         gap_in_pulse: false,
         holds_several: false,
+        is_cut: false,
         excluded: false,
         undecided: false,
         samples,

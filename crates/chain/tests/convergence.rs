@@ -9,6 +9,11 @@ fn fixed_pair(step_s: f64) -> Method {
     Method { control: Control::Fixed { step_s }, ..Method::dormand_prince(1.0) }
 }
 
+/// The pair of order 8 with a fixed step.
+fn fixed_high_pair(step_s: f64) -> Method {
+    Method { control: Control::Fixed { step_s }, ..Method::prince_dormand(1.0) }
+}
+
 /// A preloaded Hertz ring in which no contact ever opens.
 fn smooth() -> Chain {
     let initial = (1..=8).map(|bead| Initial {
@@ -66,6 +71,8 @@ fn every_method_has_its_order_where_nothing_opens() {
     // The pair's error constants of order 5 are so small that those of order
     // 6 still show.
     assert!((4.8..6.2).contains(&pair), "Dormand–Prince: {pair}");
+    let high = order(0.5, &|step| fixed_high_pair(step));
+    assert!((7.5..9.0).contains(&high), "Prince–Dormand: {high}");
 }
 
 #[test]
@@ -101,22 +108,38 @@ fn error_falls_with_the_tolerance_on_the_papers_chain() {
     }
 }
 
+#[test]
+fn peak_times_of_order_8_are_right_between_its_long_steps() {
+    let chain = row(40, 0.5, vec![hertz(), viscoelastic(), cubic()]);
+    let [incident, reflected] = ["tof_incident_s", "tof_reflected_s"]
+        .map(|quantity| reference("rig/dry_0.5", quantity));
+    for tolerance in [1e-6, 1e-8, 1e-10] {
+        let passage = shoot_with(&chain, &Method::prince_dormand(tolerance)).0;
+        close(passage.tof_incident_s(), incident, tolerance);
+        close(passage.tof_reflected_s().unwrap(), reflected, tolerance);
+    }
+}
+
 /// Force passes of the paper's shots at given tolerances. A method that needs
 /// more fails here without a clock; one that needs fewer may lower them.
 #[test]
 fn force_passes_per_shot_are_no_more_than_pinned() {
     let dry = || vec![hertz(), viscoelastic(), cubic()];
+    type Scheme = fn(f64) -> Method;
+    let (five, eight): (Scheme, Scheme) = (Method::dormand_prince, Method::prince_dormand);
     let pinned = [
-        (vec![hertz()], 1e-6, 7_400),
-        (vec![hertz(), viscoelastic()], 1e-6, 6_900),
-        (dry(), 1e-4, 3_400),
-        (dry(), 1e-6, 7_000),
-        (dry(), 1e-8, 16_800),
+        (vec![hertz()], five, 1e-6, 7_400),
+        (vec![hertz(), viscoelastic()], five, 1e-6, 6_900),
+        (dry(), five, 1e-4, 3_400),
+        (dry(), five, 1e-6, 7_000),
+        (dry(), five, 1e-8, 16_800),
+        (vec![hertz()], eight, 1e-8, 10_000),
+        (dry(), eight, 1e-8, 9_000),
     ];
-    for (laws, tolerance, most) in pinned {
+    for (laws, scheme, tolerance, most) in pinned {
         let system = System::new(&row(40, 0.5, laws)).unwrap();
         let mut passages = observe::Passages::new(7, 40, true);
-        let method = Method::dormand_prince(tolerance);
+        let method = scheme(tolerance);
         let outcome = run(&system, &method, Limits::until(1.0), &mut [&mut passages]).unwrap();
         let passes = outcome.work.force_passes;
         assert!(passes <= most && passes > most / 2, "{tolerance:e}: {passes}, pinned {most}");

@@ -234,7 +234,8 @@ pub fn parse_in(text: &str, unit: &str) -> Result<f64, UnitError> {
     let quantity = parse_quantity(text)?;
     let expected = parse_unit(unit).map_or(Dimension::NONE, |unit| unit.dimension);
     let fits = |dimension: Dimension| quantity.dimension.agrees_with(&dimension);
-    if fits(Dimension::NONE) || fits(expected) {
+    let is_share = text.trim_end().ends_with('%');
+    if (fits(Dimension::NONE) && !is_share) || fits(expected) {
         return Ok(quantity.value);
     }
     let (found, wanted) = (quantity.dimension.name(), expected.name());

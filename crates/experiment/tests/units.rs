@@ -36,6 +36,7 @@ fn powers_of_ten_are_exact() {
     assert_eq!(value("0.1 in"), 0.00254);
     assert_eq!(value("3 min"), 180.0);
     assert_eq!(value("5 %"), 0.05);
+    assert!(crate::units::parse_in("5 %", "m/s").is_err());
     assert_eq!(value("2 1/s"), 2.0);
     assert_eq!(value("1 ml"), 1e-6);
     assert_eq!(value("12 dyn/cm"), 12e-3);

@@ -207,3 +207,33 @@ fn a_short_name_is_set_in_other_models_too() {
     let reported = refused(&with_errors(&[&fit[..], &twice].concat()));
     assert!(reported.contains("--prior B is given twice"), "{reported}");
 }
+
+#[test]
+fn percents_are_of_the_mean_and_refused_where_there_is_none() {
+    let folder = folder("percents");
+    let data = curve(&folder, "dry");
+    let fit = ["fit", &data, "-p", "dry", "--free", "B", "--json"];
+    let with = |more: &[&str]| run(&with_errors(&[&fit[..], more].concat()));
+    let found = |prior: &str| {
+        let found = json(&with_errors(&[&fit[..], &["--prior", prior]].concat()));
+        found["parameters"][0]["standard_error"].as_f64().unwrap()
+    };
+    assert_eq!(found("B=80+-5%"), found("B=80+-4"));
+    for (option, text) in [("--start", "B=90%"), ("--scale", "B=10%")] {
+        assert!(!with(&[option, text]).status.success(), "{option} {text}");
+    }
+}
+
+#[test]
+fn models_are_compared_with_what_their_priors_cost() {
+    let folder = folder("compared-priors");
+    let data = curve(&folder, "dry");
+    let fit = ["fit", &data, "-p", "dry", "--free", "B", "--prior", "B=70+-2", "--json"];
+    let found = json(&with_errors(&[&fit[..], &["--against", "hertz-viscoelastic=eta"]].concat()));
+    let own = &found["comparison"]["models"][0];
+    let whole = &found["chi_square"]["value"];
+    let values = [own["chi_square"].as_f64().unwrap(), whole.as_f64().unwrap()];
+    // Curves to 1e-6 and 1e-7.
+    assert!((values[0] / values[1] - 1.0).abs() < 1e-2, "{values:?}");
+    assert_eq!(own["freedom"], found["chi_square"]["freedom"]);
+}

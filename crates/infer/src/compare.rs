@@ -12,11 +12,11 @@ use hertzchain_measure::signal::ChiSquare;
 pub struct Criteria {
     /// Fitted combinations of parameters.
     pub parameters: usize,
-    /// Measured numbers.
+    /// Measured numbers and priors.
     pub data: usize,
-    /// Chi-square of the data; `None` if no freedom is left.
+    /// Chi-square of data and priors; `None` if no freedom is left.
     pub chi_square: Option<ChiSquare>,
-    /// −2 ln likelihood of the data at the optimum, up to a constant of the data.
+    /// −2 ln likelihood of data and priors at the optimum, up to a constant of them.
     pub deviance: f64,
     /// Deviance + 2 parameters [Akaike1974].
     pub aic: f64,
@@ -31,9 +31,9 @@ impl Criteria {
     /// Of a fit by least squares; combinations of parameters that nothing determines, and
     /// parameters held by a bound, do not count.
     pub fn new(fit: &Fit) -> Self {
-        let (data, parameters) = (fit.residuals.len(), fit.rank);
+        let (data, parameters) = (fit.residuals.len() + fit.priors.len(), fit.rank);
         let (n, k) = (data as f64, parameters as f64);
-        let deviance = fit.chi_square() + 2.0 * fit.ln_sigmas;
+        let deviance = 2.0 * fit.cost;
         let aic = deviance + 2.0 * k;
         let freedom = n - k - 1.0;
         let small = match freedom > 0.0 {

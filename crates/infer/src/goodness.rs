@@ -55,9 +55,14 @@ pub(crate) fn chi_square_of(
     ChiSquare::of(value, count.checked_sub(fitted)?, spread / count.max(1) as f64)
 }
 
-/// The same of a fit.
+/// The same of a fit's data and priors.
 pub(crate) fn chi_square_of_fit(fit: &Fit, fitted: usize) -> Option<ChiSquare> {
-    chi_square_of(fit.residuals.iter().copied().zip(fit.freedoms.iter().copied()), fitted)
+    let data = fit.residuals.iter().copied().zip(fit.freedoms.iter().copied());
+    chi_square_of(data.chain(priors(fit)), fitted)
+}
+
+fn priors(fit: &Fit) -> impl Iterator<Item = (f64, f64)> {
+    fit.priors.iter().map(|residual| (*residual, f64::INFINITY))
 }
 
 /// Residuals beyond so many standard errors are outliers to a robust fit, up to a share of all.
@@ -74,13 +79,10 @@ impl Goodness {
     /// of freedom are left as data and priors have numbers more than the combinations of parameters
     /// that they determine.
     pub fn with_nuisances(nuisances: usize, problem: &dyn Problem, fit: &Fit) -> Self {
-        let priors = problem.parameters().iter().zip(&fit.point);
-        let priors = priors.filter_map(|(p, value)| p.prior.residual(*value));
         let outliers = outliers(fit);
         let data = fit.residuals.iter().copied().zip(fit.freedoms.iter().copied());
         let data = data.filter(|(residual, _)| outliers == 0 || residual.abs() < OUTLIER);
-        let priors = priors.map(|residual| (residual, f64::INFINITY));
-        let chi_square = chi_square_of(data.chain(priors), nuisances + fit.rank);
+        let chi_square = chi_square_of(data.chain(priors(fit)), nuisances + fit.rank);
         Self {
             outliers,
             birge_ratio: chi_square.map(|found| (found.value / found.freedom as f64).sqrt()),

@@ -110,6 +110,14 @@ impl ShotList {
         self.find(file, shot)?.case.as_deref()
     }
 
+    /// The highest number of a file's shot that has a line.
+    pub(crate) fn most_shots(&self, file: &Path) -> u64 {
+        let lines = file.file_name().and_then(|name| self.by_name.get(name));
+        let entries = lines.into_iter().flatten().filter_map(|line| self.entries.get(*line));
+        let of_file = entries.filter(|entry| file.ends_with(&entry.file));
+        of_file.filter_map(|entry| entry.shot).max().unwrap_or(0)
+    }
+
     /// Whether another list says the same of a shot.
     pub fn agrees_on(&self, other: &Self, shot: &Shot) -> bool {
         self.find(&shot.file, shot.shot) == other.find(&shot.file, shot.shot)

@@ -164,6 +164,7 @@ fn measured_one_by_one(
         measurement.assign_speeds(&file, &speeds_m_s, missing as u64, options);
     }
     measurement.refused.splice(0..0, refused);
+    measurement.drop_shifted_speeds(options);
     measurement.note_repairs();
     measurement
 }
@@ -211,12 +212,13 @@ fn measured(batch: &[Record], options: &Options, watch: &dyn Watch) -> Vec<Vec<D
         if let (true, Content::Plain(ranges)) = (cuts, &found) {
             let part = |&(from, to): &(usize, usize)| {
                 let part = record.part(from, to - from);
-                (Shot::measure(&part, options), Some((from, to)))
+                (Shot { is_cut: true, ..Shot::measure(&part, options) }, Some((from, to)))
             };
             return ranges.iter().map(part).collect();
         }
         let mut shot = Shot::measure(record, options);
         shot.holds_several = found != Content::One;
+        shot.is_cut = matches!(options.cutting, Cut::Level(_));
         vec![(shot, None)]
     };
     let watched = |record: &Record| {
@@ -378,6 +380,31 @@ impl Measurement {
             let speed = speed.filter(|speed| speed.is_finite());
             shot.speed_m_s = speed.map(|value| Estimate { value, sigma: 0.0 });
             shot.identify(None, options);
+        }
+    }
+
+    /// Where a recording was cut into fewer shots than the list numbers, it is not known which one is missing, and
+    /// the list's speeds could be those of others.
+    fn drop_shifted_speeds(&mut self, options: &Options) {
+        let (Some(list), false) = (&options.list, options.cutting == Cut::Never) else {
+            return;
+        };
+        let mut found: IndexMap<PathBuf, u64> = IndexMap::new();
+        for shot in self.shots.iter().filter(|shot| shot.is_cut) {
+            *found.entry(shot.file.clone()).or_default() += 1;
+        }
+        found.retain(|file, found| list.most_shots(file) > *found);
+        for (file, found) in found {
+            let examples = self.examples.iter_mut().chain(&mut self.flagged);
+            let examples = examples.map(|example| &mut example.shot);
+            let of_file = self.shots.iter_mut().chain(examples).filter(|shot| shot.file == file);
+            of_file.for_each(|shot| shot.speed_m_s = None);
+            let detail = format!(
+                "is cut into {found} shots, and the table of shots has speeds for {}: none was given a speed; \
+                 cut it otherwise with --level or --shot-samples, or leave its lines out",
+                list.most_shots(&file)
+            );
+            self.refused.push(MeasureError::Shots(file_name(&file), detail));
         }
     }
 

@@ -43,6 +43,8 @@ pub struct Shot {
     pub gap_in_pulse: bool,
     /// Whether its record seems to hold more shots than this one.
     pub holds_several: bool,
+    /// Whether it was cut out of a longer recording by what is in it.
+    pub is_cut: bool,
     /// Whether the list of shots says that it does not count.
     pub excluded: bool,
     /// Whether all shots of its speed leave open which maximum is that of its incident or wall pulse,
@@ -100,6 +102,7 @@ impl Shot {
             doubts,
             untriggered: record.triggered == Some(false),
             holds_several: false,
+            is_cut: false,
             excluded: false,
             undecided: false,
             samples,
@@ -226,7 +229,7 @@ impl Shot {
             let (are, were) = if count == 1 { (" is", "was") } else { ("s are", "were") };
             let inside = if self.gap_in_pulse { " in a pulse" } else { "" };
             remarks.push(format!(
-                "{count} sample{are} no number{inside}, from sample {} on, and {were} filled",
+                "{count} sample{are} missing{inside}, from sample {} on, and {were} filled",
                 first + 1
             ));
         }

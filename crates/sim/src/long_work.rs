@@ -1,6 +1,7 @@
 //! The expected work of a long shot, its progress, and the end of one that is cancelled or
 //! takes too many steps.
 
+use crate::accuracy;
 use crate::duration::{self, End};
 use crate::plan::Plan;
 use crate::stop::{count_steps, note_shot, stopped};
@@ -10,17 +11,17 @@ use hertzchain_experiment::Method;
 use std::fmt;
 use std::time::Instant;
 
-/// Steps of the adaptive solver a bead of a shot that ends by itself, at an accuracy of
-/// 1e-6: 73 to 78 in dry rows of 40 to 4,000 beads. They go as the accuracy to −1/5.
-const STEPS_A_BEAD: f64 = 75.0;
+/// Steps of order 5 and of order 8 a bead of a shot that ends by itself, at an accuracy of 1e-6, in dry rows.
+/// They go as the accuracy to −1 over the order.
+const STEPS_A_BEAD: [(f64, f64); 2] = [(75.0, 5.0), (8.0, 8.0)];
 
 /// A shot that ends by itself goes on until three times the pulse's way to the wall.
 const WAYS: f64 = 3.0;
 
-/// Bodies that a step computes, over those of the row, and the time of one, in s, with
+/// Bodies that a step computes, over those of the row, and the time of one of order 5 and of order 8, in s, with
 /// the runs that estimate the error: dry rows of 1,000 to 4,000 beads.
 const SHARE_OF_BODIES: f64 = 0.3;
-const BODY_STEP_S: f64 = 1e-7;
+const BODY_STEP_S: [f64; 2] = [1e-7, 2.5e-7];
 
 /// Bodies that a step computes while a pulse without losses runs to the wall: behind it all are asleep.
 const PULSE_BODIES: f64 = 40.0;
@@ -51,16 +52,18 @@ impl Expected {
         let crossing_s = system.scales().crossing_s;
         let duration_s = plan.duration_s.unwrap_or(WAYS * crossing_s);
         let bodies = system.bodies() as f64;
+        let order = usize::from(accuracy::is_of_order_8(plan));
         let steps = match (plan.method, plan.step_s) {
             (Method::Rk4 | Method::Verlet, Some(step_s)) => duration_s / step_s,
             _ => {
-                let scale = (plan.accuracy / 1e-6).powf(-0.2);
-                STEPS_A_BEAD * bodies * scale * duration_s / (WAYS * crossing_s)
+                let (a_bead, order) = STEPS_A_BEAD[order];
+                let scale = (plan.accuracy / 1e-6).powf(-1.0 / order);
+                a_bead * bodies * scale * duration_s / (WAYS * crossing_s)
             }
         };
         let steps = steps.min(duration::end(plan, system).most_steps);
         let awake = awake(plan, system, crossing_s / duration_s);
-        let time_s = BODY_STEP_S * steps * awake;
+        let time_s = BODY_STEP_S[order] * steps * awake;
         Self { steps, time_s }
     }
 }

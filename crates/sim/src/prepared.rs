@@ -261,7 +261,7 @@ impl<'a> PreparedShot<'a> {
     /// A run at a tolerance other than the plan's own.
     fn tightened(&self, tolerance: f64, sampled: bool) -> Result<Shot, StudyError> {
         let slow = self.accuracy_at(tolerance) * accuracy::of_times(self.plan) / self.plan.accuracy;
-        let mut shot = self.integrate(&accuracy::adaptive(tolerance), sampled, slow)?;
+        let mut shot = self.integrate(&accuracy::adaptive(self.plan, tolerance), sampled, slow)?;
         shot.tolerance = Some(tolerance);
         Ok(shot)
     }
@@ -275,7 +275,7 @@ impl<'a> PreparedShot<'a> {
     fn balanced(&self, mut tolerance: f64) -> Result<(Shot, f64), StudyError> {
         let mut tries = 1;
         loop {
-            let mut shot = self.once(&accuracy::adaptive(tolerance), self.plan.watch.is_some())?;
+            let mut shot = self.once(&accuracy::adaptive(self.plan, tolerance), self.plan.watch.is_some())?;
             shot.tolerance = Some(tolerance);
             let excess = residual(&shot) / self.plan.accuracy;
             if excess.is_nan() || excess <= 1.0 || tolerance <= TIGHTEST || tries == MOST_TRIES {

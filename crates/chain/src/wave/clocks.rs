@@ -94,7 +94,7 @@ impl Wave<'_> {
         let scales = (speed, speed * self.system.scales().time_s);
         let limit = self.limits.slow_tolerance.unwrap_or(0.0).max(tolerance);
         let bodies = self.window.bodies.clone();
-        worse_than(limit, bodies, step_s, weights, &self.slow.a, scales)
+        worse_than(limit, bodies, step_s, weights, &self.slow.a[..self.table.stages()], scales)
     }
 
     /// Computes a long step of all bodies into the columns of `slow`.

@@ -11,7 +11,8 @@ use crate::chain::Tension;
 use crate::laws::{Closed, ContactState};
 use crate::sensor::Sensor;
 use crate::system::{FLUSH, System};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// One step of a shot. `θ` runs from 0 to 1 within it; forces are those of
@@ -37,6 +38,8 @@ pub struct Piece<'a> {
     pub(super) meter: Option<&'a Meter>,
     /// The `θ` that was asked for last, and each stage's weights there.
     pub(super) weights: Cell<(f64, StageWeights)>,
+    /// Bends of bodies that were asked for within the step; `None` where the dense output has none.
+    pub(super) bends: Option<RefCell<BTreeMap<usize, [f64; 2]>>>,
 }
 
 /// Weights of the stages' accelerations for velocity and position.
@@ -49,6 +52,9 @@ const NEAR_TOUCH: f64 = 0.05;
 /// In steps shorter than this many contact times, rounding decides on a difference quotient along the
 /// motion: it moved a peak by 7e-8 contact times.
 const SHORT: f64 = 3e-2;
+
+/// Where around the middle of a step forces are looked at for its dense output, in steps.
+const BEND: f64 = 0.125;
 
 impl Piece<'_> {
     /// Time at which the step starts, in s.
@@ -208,12 +214,48 @@ impl Piece<'_> {
     fn interpolated(&self, body: usize, theta: f64) -> (f64, f64) {
         let (x, v) = (self.state.x[body], self.state.v[body]);
         let h = self.step_s;
-        let (mut moved, mut sped) = (0.0, 0.0);
+        let [mut sped, mut moved] = self.bent(body, theta);
         for (a, [faster, further]) in self.accelerations.iter().zip(self.weights_at(theta)) {
             sped += faster * a[body];
             moved += further * a[body];
         }
         (x + h * theta * v + h * h * moved, v + h * sped)
+    }
+
+    /// What the forces within the step add to the quintic between its ends: h² q(θ) (α + β u) with
+    /// u = θ − ½, q = (¼ − u²)³, which leaves position, velocity and acceleration of both ends as they are,
+    /// so that accelerations at u = ±[`BEND`] are those of the forces there. Its velocity over h, and its
+    /// position over h².
+    fn bent(&self, body: usize, theta: f64) -> [f64; 2] {
+        let Some(bends) = &self.bends else {
+            return [0.0; 2];
+        };
+        let known = bends.borrow().get(&body).copied();
+        let [even, odd] = known.unwrap_or_else(|| {
+            let found = self.bend(body);
+            bends.borrow_mut().insert(body, found);
+            found
+        });
+        let u = theta - 0.5;
+        let w = 0.25 - u * u;
+        let by_even = even + odd * u;
+        [odd * w.powi(3) - 6.0 * by_even * u * w * w, by_even * w.powi(3)]
+    }
+
+    /// α and β of a body.
+    fn bend(&self, body: usize) -> [f64; 2] {
+        let quintic = Piece { bends: None, ..self.clone() };
+        let missing = |theta: f64| {
+            let slopes = self.table.dense_velocity.iter().map(|row| slope(row, theta));
+            let of_quintic: f64 =
+                slopes.zip(self.accelerations).map(|(slope, a)| slope * a[body]).sum();
+            quintic.acceleration(body, theta) - of_quintic
+        };
+        let (before, after) = (missing(0.5 - BEND), missing(0.5 + BEND));
+        let w = 0.25 - BEND * BEND;
+        let even = 24.0 * BEND * BEND * w - 6.0 * w * w;
+        let odd = BEND * (24.0 * BEND * BEND * w - 18.0 * w * w);
+        [0.5 * (before + after) / even, 0.5 * (after - before) / odd]
     }
 
     fn weights_at(&self, theta: f64) -> StageWeights {
@@ -445,6 +487,12 @@ impl Piece<'_> {
             Sensor::BeadPlusWall(n) => bead(n) || self.is_awake(system.bodies() - 1),
         }
     }
+}
+
+/// Slope of a [`polynomial`].
+fn slope(coefficients: &[f64; DEGREE], theta: f64) -> f64 {
+    let powers = (1..DEGREE + 1).zip(coefficients).rev();
+    powers.fold(0.0, |sum, (power, c)| theta * sum + power as f64 * c)
 }
 
 pub(super) fn polynomial(coefficients: &[f64; DEGREE], theta: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! The default method: an embedded pair of orders 5 and 4.
 
-use super::table::Table;
+use super::table::{DEGREE, Table};
 
 /// The pair of Dormand and Prince [DormandPrince1980] with the continuous
 /// extension of order 4 [Shampine1986].
@@ -29,7 +29,7 @@ pub(crate) fn dormand_prince() -> Table {
 
 /// b_j(θ) = θ²(3−2θ) b_j + θ²(1−θ)² d_j, plus the Hermite slopes of the
 /// first and last stage.
-fn continuous_extension(end: &[f64; 6]) -> Vec<[f64; 4]> {
+fn continuous_extension(end: &[f64; 6]) -> Vec<[f64; DEGREE]> {
     let bend = [
         -12_715_105_075.0 / 11_282_082_432.0,
         0.0,
@@ -48,7 +48,7 @@ fn continuous_extension(end: &[f64; 6]) -> Vec<[f64; 4]> {
                 6 => slopes[1],
                 _ => [0.0; 3],
             };
-            [s1, s2 + 3.0 * b + bend[j], s3 - 2.0 * b - 2.0 * bend[j], bend[j]]
+            [s1, s2 + 3.0 * b + bend[j], s3 - 2.0 * b - 2.0 * bend[j], bend[j], 0.0]
         })
         .collect()
 }

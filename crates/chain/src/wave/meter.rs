@@ -120,8 +120,7 @@ impl Meter {
     }
 
     /// The last stage of a step is the first of the next.
-    pub(super) fn carry_over(&mut self) {
-        let last = self.powers_w.len() - 1;
+    pub(super) fn carry_over(&mut self, last: usize) {
         self.powers_w.swap(0, last);
     }
 

@@ -11,7 +11,9 @@ mod forces;
 mod gate;
 mod hardest;
 mod meter;
+mod order;
 mod outcome;
+mod prince_dormand;
 mod rk4;
 mod run;
 mod settings;
@@ -53,6 +55,8 @@ pub enum Control {
 pub struct Method {
     /// The numbers.
     pub table: Table,
+    /// Numbers of a method of higher order, for stretches in which contacts seldom open or close.
+    pub smooth: Option<Table>,
     /// The steps.
     pub control: Control,
     /// Name for people.
@@ -65,20 +69,31 @@ impl Method {
     pub fn dormand_prince(tolerance: f64) -> Self {
         Self {
             table: dormand_prince::dormand_prince(),
+            smooth: None,
             control: Control::Adaptive { tolerance },
             name: "Dormand–Prince 5(4), adaptive, contact changes located",
+        }
+    }
+
+    /// For long rows and tight tolerances: Prince–Dormand 8(7) where contacts seldom open or close,
+    /// Dormand–Prince 5(4) elsewhere, with a largest accepted error per step.
+    pub fn prince_dormand(tolerance: f64) -> Self {
+        Self {
+            smooth: Some(prince_dormand::prince_dormand()),
+            name: "Prince–Dormand 8(7) and Dormand–Prince 5(4), adaptive, contact changes located",
+            ..Self::dormand_prince(tolerance)
         }
     }
 
     /// The paper's classical Runge–Kutta method with a fixed step in s.
     pub fn rk4(step_s: f64) -> Self {
         let (table, control) = (rk4::rk4(), Control::Fixed { step_s });
-        Self { table, control, name: "classical Runge–Kutta 4, fixed step" }
+        Self { table, smooth: None, control, name: "classical Runge–Kutta 4, fixed step" }
     }
 
     /// Velocity Verlet with a fixed step in s, as discrete-element codes do.
     pub fn verlet(step_s: f64) -> Self {
         let (table, control) = (verlet::verlet(), Control::Fixed { step_s });
-        Self { table, control, name: "velocity Verlet, fixed step" }
+        Self { table, smooth: None, control, name: "velocity Verlet, fixed step" }
     }
 }

@@ -5,6 +5,7 @@ use super::forces::{Gates, Pass};
 use super::gate::{ChangeDetector, Event};
 use super::hardest::HardestContact;
 use super::meter::Meter;
+use super::order::Order;
 use super::outcome::{Flow, Limits, Observer, Outcome, SolveError, Work};
 use super::settings::{check, most_passes};
 use super::state::WaveState;
@@ -14,7 +15,7 @@ use super::window::MovingBodies;
 use super::zones::LongStep;
 use super::{Control, Method};
 use crate::system::System;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
 /// Runs one shot until an observer is finished or the duration is over.
@@ -28,7 +29,7 @@ pub fn run(
     observers: &mut [&mut dyn Observer],
 ) -> Result<Outcome, SolveError> {
     check(method.control, &limits, system)?;
-    let mut wave = Wave::new(system, &method.table, method.control, limits);
+    let mut wave = Wave::new(system, method, limits);
     wave.first_accelerations();
     let mut finished = false;
     while !finished && wave.state.time_s < limits.duration_s {
@@ -39,6 +40,7 @@ pub fn run(
 
 pub(super) struct Wave<'a> {
     pub(super) system: &'a System,
+    order: Order<'a>,
     pub(super) table: &'a Table,
     pub(super) control: Control,
     pub(super) limits: Limits,
@@ -68,26 +70,29 @@ pub(super) struct Wave<'a> {
 const FIRST_STEP: f64 = 1e-3;
 
 impl<'a> Wave<'a> {
-    fn new(system: &'a System, table: &'a Table, control: Control, limits: Limits) -> Self {
-        let state = WaveState::start(system, table.stages());
+    fn new(system: &'a System, method: &'a Method, limits: Limits) -> Self {
+        let remembers = system.has_states || system.has_memory;
+        let order = Order::new(&method.table, method.smooth.as_ref().filter(|_| !remembers));
+        let (control, most_stages) = (method.control, order.most_stages());
+        let state = WaveState::start(system, most_stages);
         let bodies = || vec![0.0; system.bodies()];
         let tolerance = match control {
             Control::Adaptive { tolerance } => tolerance,
             Control::Fixed { .. } => 0.0,
         };
         let window =
-            MovingBodies::new(system, &state, (table.stages(), tolerance), limits.whole_chain);
+            MovingBodies::new(system, &state, (most_stages, tolerance), limits.whole_chain);
         let adaptive = matches!(control, Control::Adaptive { .. });
         let two_clocks = adaptive && window.sleeps_again() && !system.has_memory;
         Self {
             window,
-            slow: LongStep::new(system, table.stages(), two_clocks),
+            slow: LongStep::new(system, most_stages, two_clocks),
             gates: if adaptive { Gates::Frozen } else { Gates::Instant },
             pass: Pass::new(system),
             watch: ChangeDetector::new(system, tolerance),
-            meter: limits.budget.then(|| Meter::new(system, &state, table.stages())),
+            meter: limits.budget.then(|| Meter::new(system, &state, most_stages)),
             hardest: limits.budget.then(|| HardestContact::new(system)),
-            a: vec![bodies(); table.stages()],
+            a: vec![bodies(); most_stages],
             x: state.x.clone(),
             v: state.v.clone(),
             proposed_s: FIRST_STEP * system.scales().time_s,
@@ -96,7 +101,8 @@ impl<'a> Wave<'a> {
             most_passes: most_passes(system, &limits),
             work: Work::default(),
             system,
-            table,
+            table: order.table(),
+            order,
             control,
             limits,
             state,
@@ -223,6 +229,7 @@ impl<'a> Wave<'a> {
 
     fn adaptive_step(&mut self, tolerance: f64) -> Result<f64, SolveError> {
         let mut h = self.proposed_s.min(self.longest());
+        let (mut repeated, tolerance) = (0, self.order.share() * tolerance);
         self.aimed = None;
         self.watch.rescale(self.speed_scale());
         loop {
@@ -242,6 +249,7 @@ impl<'a> Wave<'a> {
                 self.proposed_s = h;
                 self.aimed = None;
                 self.work.rejected += 1;
+                repeated += 1;
                 continue;
             }
             match self.first_change(h) {
@@ -251,6 +259,7 @@ impl<'a> Wave<'a> {
                     // about the step after it.
                     self.proposed_s =
                         if h < self.proposed_s { self.proposed_s.max(grown) } else { grown };
+                    self.order.count(repeated);
                     return Ok(h);
                 }
                 Some(event) if event.at_start => {
@@ -263,6 +272,7 @@ impl<'a> Wave<'a> {
                 }
             }
             self.work.located += 1;
+            repeated += 1;
         }
     }
 
@@ -282,7 +292,7 @@ impl<'a> Wave<'a> {
             state: &self.state,
             step_s: h,
             end: (&self.x, &self.v),
-            accelerations: &self.a,
+            accelerations: &self.a[..self.table.stages()],
             window: self.window.bodies.clone(),
             asleep_since_s: &self.window.asleep_since_s,
             frozen: self.gates == Gates::Frozen,
@@ -293,6 +303,7 @@ impl<'a> Wave<'a> {
             slow: self.slow.active.then_some(&self.slow),
             meter: self.meter.as_ref(),
             weights: Cell::new((f64::NAN, StageWeights::default())),
+            bends: self.table.bends.then(RefCell::default),
         }
     }
 
@@ -311,7 +322,7 @@ impl<'a> Wave<'a> {
             let kinetic =
                 moving.map(|i| 0.5 * self.system.mass_kg[i] * self.v[i] * self.v[i]).sum();
             meter.finish_step(h, self.table.end().0, kinetic);
-            meter.carry_over();
+            meter.carry_over(self.table.stages() - 1);
         }
         self.state.time_s += h;
         self.state.x[bodies.clone()].copy_from_slice(&self.x[bodies.clone()]);
@@ -334,6 +345,12 @@ impl<'a> Wave<'a> {
             false => self.window.follow(self.system, &mut self.state),
         }
         self.wake(awake);
+        if !self.slow.active
+            && let Some(longer) = self.order.change()
+        {
+            self.table = self.order.table();
+            self.proposed_s *= longer;
+        }
         let begun =
             !self.slow.active && self.slow.is_due(self.window.bodies.len()) && self.begin_slow();
         if changed || states_changed || finished || begun {

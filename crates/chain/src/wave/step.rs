@@ -32,7 +32,13 @@ pub(super) fn stage(
             4 => combine::<_, 4>(simd, bodies, step, weights, start, a, out),
             5 => combine::<_, 5>(simd, bodies, step, weights, start, a, out),
             6 => combine::<_, 6>(simd, bodies, step, weights, start, a, out),
-            _ => combine::<_, 7>(simd, bodies, step, weights, start, a, out),
+            7 => combine::<_, 7>(simd, bodies, step, weights, start, a, out),
+            8 => combine::<_, 8>(simd, bodies, step, weights, start, a, out),
+            9 => combine::<_, 9>(simd, bodies, step, weights, start, a, out),
+            10 => combine::<_, 10>(simd, bodies, step, weights, start, a, out),
+            11 => combine::<_, 11>(simd, bodies, step, weights, start, a, out),
+            12 => combine::<_, 12>(simd, bodies, step, weights, start, a, out),
+            _ => combine::<_, 13>(simd, bodies, step, weights, start, a, out),
         }
     ));
 }
@@ -81,7 +87,7 @@ fn combine<S: Simd, const STAGES: usize>(
 }
 
 /// Most stages of a method.
-pub(super) const MOST_STAGES: usize = 7;
+pub(super) const MOST_STAGES: usize = 14;
 
 /// Error estimates of a step, in units of the scales.
 struct Errors<'a> {

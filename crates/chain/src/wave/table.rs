@@ -1,6 +1,6 @@
 //! Explicit one-step methods for x″ = a(x, x′) as tables of numbers.
 
-pub(crate) const DEGREE: usize = 4;
+pub(crate) const DEGREE: usize = 5;
 
 /// A method in position–velocity form: with accelerations A_j of the stages,
 /// stage s is V = v + h Σ velocity[s][j] A_j and
@@ -22,6 +22,8 @@ pub struct Table {
     /// The last stage is evaluated at the end of the step.
     pub(crate) last_is_end: bool,
     pub(crate) order: f64,
+    /// The dense output needs forces within the step, as it is of a lower order than the step.
+    pub(crate) bends: bool,
 }
 
 impl Table {
@@ -61,7 +63,37 @@ impl Table {
             dense_position,
             last_is_end: true,
             order,
+            bends: false,
         }
+    }
+
+    /// From an embedded pair whose last stage is the end of the step, with the quintic between steps that
+    /// has positions, velocities and accelerations of both ends.
+    pub(crate) fn between_both_ends(rows: &[&[f64]], error: &[f64], order: f64) -> Self {
+        let no_dense = vec![[0.0; DEGREE]; rows.len()];
+        let mut table =
+            Self { bends: true, ..Self::from_runge_kutta(rows, Some(error), no_dense, order) };
+        let (velocity, position) = table.end();
+        let last = rows.len() - 1;
+        let weight = |of: &[f64], j: usize| of.get(j).copied().unwrap_or(0.0);
+        let quintics: Vec<[f64; 4]> = (0..rows.len())
+            .map(|j| {
+                let (moved, sped) = (weight(position, j), weight(velocity, j));
+                let first = if j == 0 { 1.0 } else { 0.0 };
+                let end = if j == last { 1.0 } else { 0.0 };
+                [
+                    0.5 * first,
+                    10.0 * moved - 4.0 * sped + 0.5 * end - 1.5 * first,
+                    -15.0 * moved + 7.0 * sped - end + 1.5 * first,
+                    6.0 * moved - 3.0 * sped + 0.5 * end - 0.5 * first,
+                ]
+            })
+            .collect();
+        let quintic = quintics.iter();
+        table.dense_velocity =
+            quintic.clone().map(|[b, c, d, e]| [2.0 * b, 3.0 * c, 4.0 * d, 5.0 * e, 0.0]).collect();
+        table.dense_position = quintic.map(|&[b, c, d, e]| [0.0, b, c, d, e]).collect();
+        table
     }
 
     /// Weights of the end of the step for velocity and position.
@@ -91,7 +123,7 @@ pub(crate) fn hermite(end: &[f64], first_slope: f64, last_slope: &[f64]) -> Vec<
         .enumerate()
         .map(|(j, (b, slope))| {
             let first = if j == 0 { first_slope } else { 0.0 };
-            [first, 3.0 * b - 2.0 * first - slope, first + slope - 2.0 * b, 0.0]
+            [first, 3.0 * b - 2.0 * first - slope, first + slope - 2.0 * b, 0.0, 0.0]
         })
         .collect()
 }

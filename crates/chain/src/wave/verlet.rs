@@ -15,5 +15,6 @@ pub(crate) fn verlet() -> Table {
         dense_position: hermite(&[0.5, 0.0], 0.0, &[0.5, 0.5]),
         last_is_end: false,
         order: 2.0,
+        bends: false,
     }
 }

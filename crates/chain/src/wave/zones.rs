@@ -186,9 +186,10 @@ impl LongStep {
         let h = self.step_s;
         let theta = (time_s - self.start_s) / h;
         let (mut moved, mut sped) = (0.0, 0.0);
-        for (j, a) in self.a.iter().enumerate() {
-            sped += polynomial(&table.dense_velocity[j], theta) * a[body];
-            moved += polynomial(&table.dense_position[j], theta) * a[body];
+        let rows = table.dense_velocity.iter().zip(&table.dense_position);
+        for (a, (velocity, position)) in self.a.iter().zip(rows) {
+            sped += polynomial(velocity, theta) * a[body];
+            moved += polynomial(position, theta) * a[body];
         }
         let (x, v) = (state.x[body], state.v[body]);
         (x + h * theta * v + h * h * moved, v + h * sped)

@@ -247,7 +247,7 @@ pub(super) fn models(alternatives: &AlternativeModels) -> Vec<Value> {
             "point": alternative.fit.point,
             "settings_left_out": alternative.without,
             "kept": alternative.kept,
-            "chi_square": alternative.fit.chi_square(),
+            "chi_square": chi_square.map_or(alternative.fit.chi_square(), |found| found.value),
             "freedom": chi_square.map(|found| found.freedom),
             "probability": chi_square.map(|found| found.probability),
             "aic": criteria.map(|criteria| criteria.aic),

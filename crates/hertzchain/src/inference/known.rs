@@ -84,8 +84,7 @@ pub(crate) fn systematic(
     let found = FreeNumber::find(experiment, name, None)?.parameters(&[]);
     let wrong = |why: String| InferError::Input(format!("--systematic {one}: {why}"));
     let parameter = found.first().ok_or_else(|| wrong("expected one number".to_owned()))?;
-    let share = text.ends_with('%').then_some(parameter.start.abs());
-    let sd = number(parameter, text).map_err(wrong)? * share.unwrap_or(1.0);
+    let sd = deviation(parameter, text, parameter.start).map_err(wrong)?;
     match sd > 0.0 && sd.is_finite() {
         true => Ok((name.clone(), sd)),
         false => {
@@ -94,11 +93,22 @@ pub(crate) fn systematic(
     }
 }
 
+/// A standard deviation in the parameter's unit, or in percent of its mean.
+fn deviation(parameter: &Parameter, text: &str, mean: f64) -> Result<f64, String> {
+    match text.trim().strip_suffix('%') {
+        Some(percent) => any_number(percent)
+            .map(|percent| 0.01 * percent * mean.abs())
+            .ok_or_else(|| format!("`{text}` is no share such as 5%")),
+        None => number(parameter, text),
+    }
+}
+
 /// A number in the parameter's unit: plain in SI, or with a unit of its own.
 fn number(parameter: &Parameter, text: &str) -> Result<f64, String> {
     let quantity = parse_quantity(text).map_err(|error| error.to_string())?;
     let own = parse_unit(&parameter.unit).map_or(Dimension::NONE, |unit| unit.dimension);
-    match quantity.dimension == Dimension::NONE || quantity.dimension == own {
+    let is_plain = quantity.dimension == Dimension::NONE && !text.trim_end().ends_with('%');
+    match is_plain || quantity.dimension == own {
         true => Ok(quantity.value),
         false => Err(format!(
             "`{}` has another dimension; expected a number in {}",
@@ -119,7 +129,8 @@ fn bound(parameter: &Parameter, text: &str, own: f64) -> Result<f64, String> {
 fn prior(parameter: &Parameter, text: &str) -> Result<Prior, String> {
     let normal = text.split_once("+-").or_else(|| text.split_once('±'));
     if let Some((mean, sd)) = normal {
-        return Ok(Prior::Normal { mean: number(parameter, mean)?, sd: number(parameter, sd)? });
+        let mean = number(parameter, mean)?;
+        return Ok(Prior::Normal { mean, sd: deviation(parameter, sd, mean)? });
     }
     let (median, factor) = text.split_once("*/").ok_or("expected MEAN+-SD, or MEDIAN*/FACTOR")?;
     let factor = factor.trim().parse::<f64>().ok().filter(|factor| *factor > 1.0);

@@ -39,7 +39,7 @@ pub fn user(error: impl std::fmt::Display) -> Failure {
 ///
 /// # Errors
 /// That it was broken off.
-pub fn check_cancelled() -> Result<(), Failure> {
+pub(crate) fn check_cancelled() -> Result<(), Failure> {
     match stopped() {
         true => Err(user(StudyError::Stopped)),
         false => Ok(()),

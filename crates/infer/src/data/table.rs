@@ -232,11 +232,12 @@ fn unclear(titles: &[String], wanted: &[Observable], file: &str) -> Result<(), I
              fit their means: `speeds.csv` of the same folder, in Python what `measure` returned"
         ));
     }
-    let read = wanted.iter().map(|of| of.column());
-    for column in read.chain(AT_MEAN_SPEED).chain(["speed_m_s"]) {
-        if titles.iter().filter(|title| *title == column).count() > 1 {
-            return InferError::input(format!("{file}: column `{column}` stands there twice"));
-        }
+    let twice = |(at, title): (usize, &String)| titles[..at].contains(title).then(|| title.clone());
+    let read = ["speed", "tof_", "shots", "case"].into_iter();
+    let read = read.chain(Observable::ALL.map(|of| of.column()));
+    let is_read = |title: &String| read.clone().any(|stem| title.starts_with(stem));
+    if let Some(column) = titles.iter().enumerate().filter_map(twice).find(is_read) {
+        return InferError::input(format!("{file}: column `{column}` stands there twice"));
     }
     for of in wanted.iter().filter(|of| of.is_time()) {
         let stem = of.column().strip_suffix("_s").unwrap_or(of.column());

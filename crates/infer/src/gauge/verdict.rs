@@ -130,7 +130,7 @@ impl Gauge {
         // The dry numbers cost no degree of freedom of the wet data: the dry curve has paid for them.
         let determined = fit.rank.saturating_sub(self.dry_fit.rank);
         let freedom = (fit.residuals.len() - self.dry_fit.residuals.len()).checked_sub(determined);
-        let rise = self.rise(&problem, &fit);
+        let rise = self.rise(&fit);
         let chi_square = freedom.and_then(|freedom| ChiSquare::of(rise, freedom, 1.0));
         Ok((problem, fit, chi_square))
     }
@@ -152,8 +152,8 @@ impl Gauge {
     }
 
     /// By how much chi-square of both curves together exceeds that of the dry one alone.
-    fn rise(&self, joint: &CurveProblem, fit: &Fit) -> f64 {
-        (whole_chi_square(joint, fit) - whole_chi_square(&self.dry, &self.dry_fit)).max(0.0)
+    fn rise(&self, fit: &Fit) -> f64 {
+        (whole_chi_square(fit) - whole_chi_square(&self.dry_fit)).max(0.0)
     }
 
     fn compare(&self, oil: &Oil, wet: &MeasuredCurve) -> Result<Match, InferError> {
@@ -191,7 +191,7 @@ impl Gauge {
             // What the wet curve makes worse: a shared error must not be pulled for nothing.
             true => {
                 let freedom = residuals.len() - own.len();
-                ChiSquare::of(self.rise(&joint, &fit_result), freedom, 1.0)
+                ChiSquare::of(self.rise(&fit_result), freedom, 1.0)
             }
         };
         let Some(chi_square) = chi_square else {
@@ -213,8 +213,6 @@ impl Gauge {
     }
 }
 
-fn whole_chi_square(problem: &CurveProblem, fit: &Fit) -> f64 {
-    let priors = problem.parameters().iter().zip(&fit.point);
-    let priors = priors.filter_map(|(parameter, value)| parameter.prior.residual(*value));
-    fit.chi_square() + priors.map(|r| r * r).sum::<f64>()
+fn whole_chi_square(fit: &Fit) -> f64 {
+    fit.chi_square() + fit.priors.iter().map(|r| r * r).sum::<f64>()
 }

@@ -70,7 +70,9 @@ pub struct Fit {
     pub cost: f64,
     /// Standardised residuals of the data.
     pub residuals: Vec<f64>,
-    /// Degrees of freedom of their σ; infinite where they are known.
+    /// Residuals of the priors, in their standard deviations.
+    pub priors: Vec<f64>,
+    /// Degrees of freedom of the data's σ; infinite where they are known.
     pub freedoms: Vec<f64>,
     /// Σ ln σ of the data; 0 if no σ depends on the parameters.
     pub ln_sigmas: f64,
@@ -294,6 +296,7 @@ fn at_optimum(merit: &Merit<'_>, best: &Descent<'_>) -> Result<Fit, InferError> 
         point: point.clone(),
         cost: at.cost,
         residuals: at.rows[..problem.residual_count()].to_vec(),
+        priors: at.rows[problem.residual_count()..].to_vec(),
         freedoms: (problem.freedoms(point).ok().flatten())
             .unwrap_or_else(|| vec![f64::INFINITY; problem.residual_count()]),
         ln_sigmas: at.ln_sigmas.iter().sum(),

@@ -10,6 +10,7 @@ use crate::records::record::Record;
 use crate::records::stored::Head;
 use crate::records::text::seconds;
 use indexmap::IndexMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -162,8 +163,13 @@ pub(crate) trait Arrays {
         None
     }
 
-    /// Intervals that attributes state: as such, and by a rate.
-    fn stated_s(&self) -> [Option<f64>; 2] {
+    /// Intervals that attributes of arrays of these names state: as such, and by a rate.
+    fn stated_s(&self, _names: &[String]) -> [Vec<f64>; 2] {
+        [const { Vec::new() }; 2]
+    }
+
+    /// The same of attributes of anything in the file, if they agree.
+    fn stated_anywhere_s(&self) -> [Option<f64>; 2] {
         [None; 2]
     }
 
@@ -179,34 +185,6 @@ pub(crate) trait Arrays {
 /// channels.
 pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw> {
     let names = arrays.names();
-    let is = |known: &[&str], name: &str| known.contains(&&*last(name).to_lowercase());
-    let of = |known: &[&str]| names.iter().find(|name| is(known, name));
-    let values = |known| of(known).map(|name| arrays.values(name)).transpose();
-    let first = |values: Option<Vec<f64>>| values?.first().copied();
-    let step = |times: Option<Vec<f64>>| mean_step(&times?);
-    let (times, times_s) = (values(TIMES)?, values(TIMES_S)?);
-    let of_rate_s = first(values(RATES)?).map(f64::recip);
-    let of_interval_s = first(values(INTERVALS)?);
-    let differ =
-        |(one, other): &(f64, f64)| options.rate_hz.is_none() && (one / other - 1.0).abs() > SAME;
-    let [by_interval_s, by_rate_s] = match of_interval_s.or(of_rate_s) {
-        Some(_) => [None; 2],
-        None => arrays.stated_s(),
-    };
-    let both = of_rate_s.or(by_rate_s).zip(of_interval_s.or(by_interval_s)).filter(differ);
-    let stated_s = of_interval_s
-        .or(of_rate_s)
-        .or(first(values(&[PERIOD])?.filter(|it| it.len() == 1 && it[0] < LONGEST_S)))
-        .or(by_interval_s)
-        .or(by_rate_s)
-        .or(step(times_s));
-    let unit_s = of(TIMES).and_then(|name| seconds(&arrays.unit(name)?));
-    let mut note = match (stated_s, of(TIMES)) {
-        (None, Some(name)) => seconds_assumed(name, unit_s, options),
-        _ => both.map(|(rate, interval)| other_interval(rate, interval)),
-    };
-    let unit_s = unit_s.or(options.time_unit_s).unwrap_or(1.0);
-    let mut interval = stated_s.or(step(times).map(|step| step * unit_s));
     let all_speeds = names.iter().filter(|name| is(SPEEDS, name)).map(|name| arrays.values(name));
     let speeds = all_speeds.collect::<Result<Vec<_>, _>>()?.concat();
     let known = [INTERVALS, RATES, TIMES, TIMES_S, SPEEDS].concat();
@@ -219,18 +197,155 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
     if samples.is_empty() {
         return Err(no_samples(arrays.file(), &names));
     }
+    let mut stated = Stated::of_all(&*arrays, &names, &samples, options)?;
     let mut read = options.clone();
     if let Some((others, step)) = time_column(&*arrays, &samples, options) {
         read = others;
-        if interval.is_none() {
-            interval = step_s(step, options);
-            note = note.or(interval.and_then(|_| seconds_assumed("", None, options)));
+        if stated.interval_s.is_none() {
+            stated.interval_s = step_s(step, options);
+            let assumed = stated.interval_s.and_then(|_| seconds_assumed("", None, options));
+            stated.note = stated.note.or(assumed);
         }
     }
-    let interval_s = interval_s(arrays.file(), interval, options);
-    let interval_s = interval_s.map_err(|error| arrays.cut_short().unwrap_or(error))?;
-    let (records, recordings) = of_samples(&arrays, samples, interval_s, &read)?;
+    let note = stated.note.clone();
+    let (records, recordings) =
+        of_samples(&arrays, samples, (Rc::new(Groups::of(&names)), stated), &read)?;
     Ok(with_speeds(records, speeds, recordings, note))
+}
+
+fn is(known: &[&str], name: &str) -> bool {
+    known.contains(&&*last(name).to_lowercase())
+}
+
+/// What numbers and attributes state of the interval between samples.
+#[derive(Clone, Debug, Default)]
+struct Stated {
+    interval_s: Option<f64>,
+    note: Option<String>,
+}
+
+impl Stated {
+    /// What a file states for all of its samples: no array of a single shot has a say in that of others.
+    fn of_all(
+        arrays: &dyn Arrays,
+        names: &[String],
+        samples: &[String],
+        options: &ReadOptions,
+    ) -> Result<Self> {
+        let (shots, are_groups) = shots(samples, options).unwrap_or_default();
+        let own: HashSet<&str> = shots.iter().flatten().map(String::as_str).collect();
+        let first = shots.iter().filter(|_| are_groups).filter_map(|shot| shot.first());
+        let groups: HashSet<&str> = first.filter_map(|first| above(first).next()).collect();
+        let is_own =
+            |name: &str| own.contains(name) || above(name).any(|group| groups.contains(group));
+        let shared: Vec<String> = names.iter().filter(|name| !is_own(name)).cloned().collect();
+        let mut found = Self::of(arrays, &shared, options)?;
+        if found.interval_s.is_none() {
+            let [interval_s, rate_s] = arrays.stated_anywhere_s();
+            found.interval_s = interval_s.or(rate_s);
+            found.note = both(rate_s, interval_s, options).or(found.note);
+        }
+        Ok(found)
+    }
+
+    /// What a shot's own arrays state, else what is stated for all.
+    fn of_shot(&self, arrays: &dyn Arrays, own: &[String], options: &ReadOptions) -> Result<Self> {
+        let found = Self::of(arrays, own, options)?;
+        Ok(if found.interval_s.is_some() { found } else { self.clone() })
+    }
+
+    /// What arrays of these names state, and their attributes.
+    fn of(arrays: &dyn Arrays, names: &[String], options: &ReadOptions) -> Result<Self> {
+        let file = arrays.file();
+        let values = |known: &[&str]| -> Result<Vec<Vec<f64>>> {
+            names.iter().filter(|name| is(known, name)).map(|name| arrays.values(name)).collect()
+        };
+        let one = |of: Vec<f64>| one_interval(file, of, options);
+        let single = |found: &Vec<f64>| found.len() == 1 && found[0] < LONGEST_S;
+        let steps = |times: Vec<Vec<f64>>, unit_s: f64| {
+            let steps = times.iter().filter_map(|times| mean_step(times));
+            one(steps.map(|step| step * unit_s).collect())
+        };
+        let [interval_s, rate_s] = arrays.stated_s(names);
+        let of_samples_s = one(interval_s)?.or(one(rate_s)?);
+        let rate_s = one(values(RATES)?.concat().iter().map(|rate| rate.recip()).collect())?;
+        let interval_s = one(values(INTERVALS)?.concat())?;
+        let period_s = values(&[PERIOD])?.into_iter().filter(single).flatten().collect();
+        let named = names.iter().find(|name| is(TIMES, name));
+        let unit_s = named.and_then(|name| seconds(&arrays.unit(name)?));
+        let of_times_s = steps(values(TIMES)?, unit_s.or(options.time_unit_s).unwrap_or(1.0))?;
+        let of_times_s = steps(values(TIMES_S)?, 1.0)?.or(of_times_s);
+        let all = [of_samples_s, interval_s, rate_s, one(period_s)?, of_times_s];
+        let taken = all.into_iter().flatten().next();
+        let mut contradictions = all.into_iter().filter_map(|other| both(other, taken, options));
+        let assumed = || seconds_assumed(named?, unit_s, options).filter(|_| taken == of_times_s);
+        Ok(Self { interval_s: taken, note: contradictions.next().or_else(assumed) })
+    }
+
+    /// The interval in s, with what the options say.
+    fn found_s(&self, arrays: &dyn Arrays, options: &ReadOptions) -> Result<f64> {
+        let found = interval_s(arrays.file(), self.interval_s, options);
+        found.map_err(|error| arrays.cut_short().unwrap_or(error))
+    }
+}
+
+/// The arrays in each group, those of its own groups included.
+struct Groups(HashMap<String, Vec<String>>);
+
+impl Groups {
+    fn of(names: &[String]) -> Self {
+        let mut groups: HashMap<String, Vec<String>> = HashMap::new();
+        for name in names {
+            for group in above(name) {
+                groups.entry(group.to_owned()).or_default().push(name.clone());
+            }
+        }
+        Self(groups)
+    }
+
+    /// The arrays that are a shot's own: those of its group, or it alone.
+    fn own<'a>(&'a self, shot: &'a [String], is_group: bool) -> &'a [String] {
+        let first = shot.first().filter(|_| is_group);
+        let group = first.and_then(|first| self.0.get(above(first).next()?));
+        group.map_or(shot, Vec::as_slice)
+    }
+}
+
+/// The groups that an array is in, from the nearest on.
+fn above(name: &str) -> impl Iterator<Item = &str> {
+    name.rmatch_indices('/').map(|(at, _)| &name[..at])
+}
+
+/// The note on two intervals that are not the same.
+fn both(other_s: Option<f64>, taken_s: Option<f64>, options: &ReadOptions) -> Option<String> {
+    let (other, taken) = other_s.zip(taken_s)?;
+    let differ = options.rate_hz.is_none() && (other / taken - 1.0).abs() > SAME;
+    differ.then(|| other_interval(other, taken))
+}
+
+/// The one interval in s that several numbers state; unlike ones are not those of one recording.
+pub(crate) fn one_interval(
+    file: &Path,
+    mut of: Vec<f64>,
+    options: &ReadOptions,
+) -> Result<Option<f64>> {
+    of.retain(|step| step.is_finite() && *step > 0.0);
+    let Some(&first) = of.first() else {
+        return Ok(None);
+    };
+    let other = of.iter().find(|step| (*step / first - 1.0).abs() > SAME);
+    match other.filter(|_| options.rate_hz.is_none()) {
+        Some(other) => Err(MeasureError::Rate(
+            file_name(file),
+            format!(
+                "states intervals between samples of {} and of {} µs, and not which samples have which; \
+                 expected groups of the same datasets with one each, or --rate for all",
+                1e6 * first,
+                1e6 * other
+            ),
+        )),
+        None => Ok(Some(first)),
+    }
 }
 
 /// Times among few columns, or few rows, of the only array of samples: the first, if it rises
@@ -302,7 +417,7 @@ fn rows(arrays: &dyn Arrays, name: &str, options: &ReadOptions) -> Result<usize>
 fn of_samples(
     arrays: &Rc<dyn Arrays>,
     samples: Vec<String>,
-    interval_s: f64,
+    (groups, stated): (Rc<Groups>, Stated),
     options: &ReadOptions,
 ) -> Result<(Raw, usize)> {
     let file = arrays.file();
@@ -315,26 +430,23 @@ fn of_samples(
             false => options,
         };
         let recordings = rows(&**arrays, one, options)?;
+        let interval_s = stated.found_s(&**arrays, options)?;
         return Ok((arrays.records(one, interval_s, options)?, recordings));
     }
-    // Channels by their whole paths are of no group.
-    let by_path = options.channels.iter().any(|channel| samples.contains(channel));
-    if let Some(groups) = shot_groups(&samples).filter(|_| !by_path) {
-        let (recordings, note) = (groups.len(), groups_assumed(&groups));
-        let all = group_by_group(arrays.clone(), groups, interval_s, options.clone());
-        return Ok((with_note(all, note), recordings));
-    }
-    let are_shots = samples.iter().all(|name| is_shot(last(name)));
-    if are_shots && options.rows != Rows::Channels && options.channels.is_empty() {
+    if let Some((shots, are_groups)) = shots(&samples, options) {
         let each = samples.iter().map(|name| rows(&**arrays, name, options));
         let recordings = match options.parts {
+            _ if are_groups => shots.len(),
             // Shots of equal length come one by one, whatever array they are of.
             Parts::Shots(_) => 0,
             _ => each.sum::<Result<usize>>()?,
         };
-        let groups = samples.into_iter().map(|name| vec![name]).collect();
-        return Ok((group_by_group(arrays.clone(), groups, interval_s, free), recordings));
+        let note = groups_assumed(&shots).filter(|_| are_groups);
+        let all =
+            shot_by_shot(arrays.clone(), shots, (groups, stated), options.clone(), are_groups);
+        return Ok((with_note(all, note), recordings));
     }
+    let interval_s = stated.found_s(&**arrays, options)?;
     let chosen = chosen(file, &samples, options)?;
     let chosen: Vec<&String> = chosen.iter().filter_map(|i| samples.get(*i)).collect();
     for name in &chosen {
@@ -420,16 +532,33 @@ fn with_note(records: Raw, note: Option<String>) -> Raw {
     }))
 }
 
-/// The records of one group after the other, numbered.
-fn group_by_group(
+/// Arrays of each shot, where samples are those of several: in groups, which is said, or one by one.
+fn shots(samples: &[String], options: &ReadOptions) -> Option<(Vec<Vec<String>>, bool)> {
+    // Channels by their whole paths are of no group.
+    let by_path = options.channels.iter().any(|channel| samples.contains(channel));
+    if let Some(groups) = shot_groups(samples).filter(|_| !by_path) {
+        return Some((groups, true));
+    }
+    let called = samples.len() > 1 && samples.iter().all(|name| is_shot(last(name)));
+    let may_be = called && options.rows != Rows::Channels && options.channels.is_empty();
+    may_be.then(|| (samples.iter().map(|name| vec![name.clone()]).collect(), false))
+}
+
+/// The records of one shot's arrays after the other's, numbered.
+fn shot_by_shot(
     arrays: Rc<dyn Arrays>,
-    groups: Vec<Vec<String>>,
-    interval_s: f64,
+    shots: Vec<Vec<String>>,
+    (groups, stated): (Rc<Groups>, Stated),
     options: ReadOptions,
+    are_groups: bool,
 ) -> Raw {
-    let records = groups.into_iter().flat_map(move |group| {
-        or_error(of_samples(&arrays, group, interval_s, &options).map(|opened| opened.0))
-    });
+    let open = move |shot: Vec<String>| {
+        let own = stated.of_shot(&*arrays, groups.own(&shot, are_groups), &options)?;
+        let note = own.note.clone().filter(|_| own.interval_s != stated.interval_s);
+        let (records, _) = of_samples(&arrays, shot, (groups.clone(), own), &options)?;
+        Ok(with_note(records, note))
+    };
+    let records = shots.into_iter().flat_map(move |shot| or_error(open(shot)));
     Box::new((1..).zip(records).map(|(number, record)| {
         let mut record = record?;
         record.shot = Some(number);

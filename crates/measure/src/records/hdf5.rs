@@ -253,26 +253,25 @@ impl Arrays for Datasets {
         dataset.attr(&name).ok()?.read_string().ok()
     }
 
-    fn stated_s(&self) -> [Option<f64>; 2] {
-        let number = |names: &[&str]| {
-            let datasets = self.names.keys().filter_map(|name| self.dataset(name).ok());
-            let values = |of: &H5Dataset| {
+    fn stated_s(&self, names: &[String]) -> [Vec<f64>; 2] {
+        let of = |datasets: &[H5Dataset], names: &[&str]| -> Vec<f64> {
+            let stated = |of: &H5Dataset| {
                 let mut there = of.attr_names().unwrap_or_default();
                 there.retain(|name| names.contains(&&*name.to_lowercase()));
                 there.iter().find_map(|name| attribute(of, name).ok())
             };
-            datasets.into_iter().find_map(|dataset| values(&dataset))
+            datasets.iter().filter_map(stated).collect()
         };
-        let bytes = || beginning(&self.file, SEARCHED).unwrap_or_default();
-        let of_groups = |bytes: Vec<u8>| {
-            let first = |names: &[&str]| names.iter().find_map(|n| attribute_anywhere(&bytes, n));
-            [first(INTERVALS), first(RATES).map(f64::recip)]
-        };
-        let of_datasets = [number(INTERVALS), number(RATES).map(f64::recip)];
-        let stated = match of_datasets {
-            [None, None] => of_groups(bytes()),
-            stated => stated,
-        };
+        let datasets = names.iter().filter_map(|name| self.dataset(name).ok());
+        let datasets: Vec<H5Dataset> = datasets.collect();
+        let rates = of(&datasets, RATES);
+        [of(&datasets, INTERVALS), rates.into_iter().map(f64::recip).collect()]
+    }
+
+    fn stated_anywhere_s(&self) -> [Option<f64>; 2] {
+        let bytes = beginning(&self.file, SEARCHED).unwrap_or_default();
+        let first = |names: &[&str]| names.iter().find_map(|n| attribute_anywhere(&bytes, n));
+        let stated = [first(INTERVALS), first(RATES).map(f64::recip)];
         stated.map(|step| step.filter(|step| step.is_finite() && *step > 0.0))
     }
 }

@@ -11,7 +11,7 @@ use crate::records::{mat, numpy, tdms, text, wav};
 use crate::signal::extremes;
 use std::fs::File;
 use std::io::Read;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
 pub(crate) type Raw = Box<dyn Iterator<Item = Result<Record>>>;
@@ -176,6 +176,7 @@ impl Records {
         let mut gaps = Vec::new();
         for channel in &mut record.channels {
             gaps.extend(fill_gaps(&record.source, channel)?);
+            gaps.extend(fill_dropouts(&mut channel.volts));
         }
         record.gaps = gaps;
         for channel in &record.channels {
@@ -240,6 +241,40 @@ fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>> {
     let gaps: Vec<Range<usize>> = runs.map(|run| run[0]..run[0] + run.len()).collect();
     gaps.iter().for_each(|gap| fill(volts, gap, ends));
     Ok(gaps)
+}
+
+/// Lengths of dropouts: of fewer samples they are spikes.
+const DROPOUT: RangeInclusive<usize> = 3..=64;
+/// Least step on either side of a dropout, as a share of the record's range and over the step beside it: the flanks
+/// of a pulse of six samples are not as steep, and a clipped top is not left as abruptly.
+const ABRUPT: (f64, f64) = (0.25, 3.0);
+
+/// Fills runs of one value that a signal jumps to and back from, as where samples were lost; returns them.
+fn fill_dropouts(volts: &mut [f64]) -> Vec<Range<usize>> {
+    let ends = extremes(volts);
+    let least = ABRUPT.0 * (ends.1 - ends.0);
+    let is_abrupt = |value: f64, beside: [f64; 2]| {
+        let step = beside[0] - value;
+        let steep = step.abs() > ABRUPT.1 * (beside[1] - beside[0]).abs();
+        Some(step).filter(|step| step.abs() > least && steep)
+    };
+    let mut begin = 0;
+    let runs = volts.chunk_by(|one, next| one == next).filter_map(|run| {
+        let gap = begin..begin + run.len();
+        begin = gap.end;
+        let length = DROPOUT.contains(&run.len());
+        let before = volts.get(gap.start.checked_sub(2)?..gap.start).filter(|_| length)?;
+        let after = volts.get(gap.end..gap.end + 2)?;
+        let steps = [[before[1], before[0]], [after[0], after[1]]];
+        let [down, up] = steps.map(|beside| is_abrupt(run[0], beside));
+        (down? * up? > 0.0).then_some(gap)
+    });
+    let dropouts: Vec<Range<usize>> = runs.collect();
+    for gap in &dropouts {
+        volts[gap.clone()].fill(f64::NAN);
+        fill(volts, gap, ends);
+    }
+    dropouts
 }
 
 /// Fills a gap: with the record's extreme what was beyond a range, else between its neighbours.

@@ -10,6 +10,7 @@ use crate::records::stored::{
     Head, HeaderBytes, NumberKind, SampleRuns, StoredChannel, StoredNumber,
 };
 use crate::records::text::{seconds, volts};
+use crate::signal::extremes;
 use indexmap::IndexMap;
 use std::collections::HashMap;
 use std::fs::File;
@@ -70,21 +71,36 @@ fn open_group(
         let why = "as in its first channel";
         return Err(MeasureError::lengths(source, other.len(), frames, why));
     }
-    let stated_s = names.iter().find_map(|name| channels[name].number("wf_increment"));
+    let stated = |property: &str| -> Vec<f64> {
+        names.iter().filter_map(|name| channels[name].number(property)).collect()
+    };
+    let (starts, stated_s) = (
+        extremes(&stated("wf_start_offset")),
+        arrays::one_interval(file, stated("wf_increment"), options)?,
+    );
     let own = times.filter(|_| stated_s.is_none()).and_then(|(name, step)| {
         let unit_s = units.get(&name).copied();
         let step_s = unit_s.map(|unit| unit * step).or_else(|| arrays::step_s(step, options));
         Some((step_s?, seconds_assumed(&name, unit_s, options)))
     });
     let (own_s, note) = own.map_or((None, None), |(step_s, note)| (Some(step_s), note));
+    let interval_s = interval_s(file, stated_s.or(own_s), options)?;
+    let apart_s = starts.1 - starts.0;
+    let apart = (apart_s > 0.5 * interval_s).then(|| {
+        let apart_us = 1e6 * apart_s;
+        format!(
+            "its channels begin {apart_us:.3} µs apart (wf_start_offset), and are taken as if they began together; \
+             --skew takes a delay of the wall's out"
+        )
+    });
     let head = Head {
         file: file.to_owned(),
         part: Some(group),
         names,
-        interval_s: interval_s(file, stated_s.or(own_s), options)?,
+        interval_s,
         rows: 1,
         frames,
-        note,
+        note: note.or(apart),
     };
     Ok(head.stored(options.parts, opened, stored, 0))
 }

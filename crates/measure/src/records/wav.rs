@@ -7,20 +7,20 @@ use crate::records::read::Raw;
 use crate::records::stored::{Head, NumberKind, StoredChannel, StoredNumber};
 use hound::{SampleFormat, WavReader, WavSpec};
 use std::fs::File;
-use std::io::{BufReader, Seek};
+use std::io::{self, BufReader, Read, Seek};
 use std::path::Path;
 
 /// Opens a WAV file; its whole numbers are shares of the full scale.
 pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     let reading = |cause| MeasureError::reading(file, cause);
-    let opened = File::open(file).map_err(reading)?;
-    let wave = WavReader::new(BufReader::new(opened)).map_err(|error| refused(file, error))?;
+    let mut reader = BufReader::new(File::open(file).map_err(reading)?);
+    let header = header(&mut reader).map_err(reading)?;
+    let start = reader.stream_position().map_err(reading)?;
+    let wave = WavReader::new(&header[..]).map_err(|error| refused(file, error))?;
     let (spec, frames) = (wave.spec(), wave.duration() as usize);
     let number = number(file, spec)?;
     let names = numbered(usize::from(spec.channels));
     let chosen = chosen(file, &names, options)?;
-    let mut reader = wave.into_inner();
-    let start = reader.stream_position().map_err(reading)?;
     if frames == 0 {
         return Err(MeasureError::empty(file_name(file)));
     }
@@ -40,6 +40,34 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
     };
     let channels = chosen.iter().map(channel).collect();
     Ok(head.stored(options.parts, reader, channels, 0))
+}
+
+/// Bytes of a chunk that says how samples are stored, at most.
+const MOST_FORMAT: u64 = 64;
+
+/// The file's header without chunks that say nothing of samples, up to these: hound does not expect the byte
+/// that follows a chunk of odd length.
+fn header(reader: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
+    let mut header = Vec::new();
+    reader.by_ref().take(12).read_to_end(&mut header)?;
+    loop {
+        let mut chunk = Vec::new();
+        reader.by_ref().take(8).read_to_end(&mut chunk)?;
+        let &[a, b, c, d, ref length @ ..] = &chunk[..] else {
+            return Ok(header);
+        };
+        let length = length.try_into().map_or(0, u32::from_le_bytes);
+        let (length, padded) = (u64::from(length), i64::from(length) + i64::from(length % 2));
+        match &[a, b, c, d] {
+            b"data" => return Ok([header, chunk].concat()),
+            b"fmt " if length <= MOST_FORMAT => {
+                header.append(&mut chunk);
+                reader.by_ref().take(length).read_to_end(&mut header)?;
+                reader.seek_relative(padded - length as i64)?;
+            }
+            _ => reader.seek_relative(padded)?,
+        }
+    }
 }
 
 fn number(file: &Path, spec: WavSpec) -> Result<StoredNumber> {

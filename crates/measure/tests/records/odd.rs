@@ -244,3 +244,24 @@ fn arrays_of_three_axes_are_read_in_either_order() {
         }
     }
 }
+
+#[test]
+fn lost_samples_in_a_pulse_are_gaps_and_flat_tops_and_quiet_are_none() {
+    let folder = folder("dropouts");
+    let bell = |i: usize| {
+        let u = (i as f64 - 500.0) / 20.0;
+        (1.0 - u * u / 4.0).max(0.0) + 1e-3 * volt(i)
+    };
+    let text = |sample: &dyn Fn(usize) -> f64| {
+        (0..1000).map(|i| format!("{}\n", sample(i))).collect::<String>()
+    };
+    let lost = |i: usize| if (502..508).contains(&i) { 0.0 } else { bell(i) };
+    let clipped = |i: usize| bell(i).min(0.8);
+    let options = ReadOptions { rate_hz: Some(1e6), ..ReadOptions::default() };
+    let of = |name, sample: &dyn Fn(usize) -> f64| {
+        gaps(&only(&written(&folder, name, text(sample)), &options))
+    };
+    assert_eq!(of("lost.csv", &lost), [(502, 508)]);
+    assert_eq!(of("clipped.csv", &clipped), []);
+    assert_eq!(of("whole.csv", &bell), []);
+}

@@ -175,7 +175,7 @@ fn reflected_s(
     passage: &Passage,
     change: impl FnOnce(&System, &mut State),
 ) -> Result<Option<f64>, StudyError> {
-    let method = adaptive(tolerance(plan).0);
+    let method = adaptive(plan, tolerance(plan).0);
     let system = System::new(&plan.chain)?;
     let until_wall = Limits::until(passage.wall.time_s);
     let met = run(&system, &method, until_wall, &mut [])?;

@@ -37,6 +37,7 @@ fn measured(shots: usize) -> Measurement {
         gaps: None,
         gap_in_pulse: false,
         holds_several: false,
+        is_cut: false,
         excluded: false,
         undecided: false,
         samples: [const { None }; 3],

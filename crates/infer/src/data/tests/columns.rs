@@ -42,6 +42,11 @@ fn a_time_in_another_unit_and_a_column_twice_are_not_left_out_without_a_word() {
     assert!(other.contains("`tof_incident_us` is there without"), "{other}");
     let twice = reported("speed_m_s,tof_incident_s,tof_incident_s").unwrap_err().to_string();
     assert!(twice.contains("stands there twice"), "{twice}");
+    for error in ["tof_incident_s_error", "speed_error_m_s", "shots", "tof_correlation"] {
+        let twice = reported(&format!("speed_m_s,tof_incident_s,{error},{error}")).unwrap_err();
+        assert!(twice.to_string().contains(&format!("`{error}` stands there twice")), "{twice}");
+    }
+    assert!(reported("speed_m_s,tof_incident_s,note,note").is_ok());
     assert!(reported("speed_m_s,tof_incident_s,tof_incident_s_error").is_ok());
 }
 

@@ -300,7 +300,7 @@ fn quantity<'a>(rest: &'a str, dialect: &Dialect) -> Option<(f64, &'a str)> {
     };
     let (value, tail) =
         leading_number(rest, dialect.decimal_comma).or_else(|| leading_number(rest, false))?;
-    let ends = [dialect.delimiter, ' ', '"', '\t'];
+    let ends = [dialect.delimiter, ',', ';', ' ', '"', '\t'];
     let unit = tail.trim_start_matches(ends).split(ends).next()?;
     let unit = if unit.is_empty() { before } else { unit };
     Some((value, unit.trim_matches(['(', ')', '[', ']'])))

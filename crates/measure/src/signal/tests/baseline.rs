@@ -42,3 +42,14 @@ fn too_little_or_nonsense_is_refused() {
     bad[3] = f64::NAN;
     assert!(matches!(baseline(&bad), Err(MeasureError::NotFinite(3, _))));
 }
+
+#[test]
+fn the_half_periods_of_a_sine_do_not_cancel() {
+    // Of 37 samples a period, over many: what is summed goes up to a quarter of one, 1/π periods.
+    for count in [400, 4000, 20_000] {
+        let sine = |i: usize| (std::f64::consts::TAU * i as f64 / 36.63).sin();
+        let quiet: Vec<f64> = (0..count).map(sine).collect();
+        let found = baseline(&quiet).unwrap().correlation;
+        assert!((10.0..14.0).contains(&found), "{count}: {found}");
+    }
+}

@@ -66,3 +66,46 @@ with h5py.File("text.h5", "w") as file:
     let empty: Vec<_> = read(&folder.join("text.h5"), &open).collect();
     assert!(matches!(&empty[0], Err(MeasureError::Samples(_, why)) if why == "holds no samples"));
 }
+
+#[test]
+fn each_shot_has_the_interval_that_its_own_group_states() {
+    let folder = folder("h5py-intervals");
+    let program = WAVE.to_owned()
+        + r#"
+import h5py
+with h5py.File("times.h5", "w") as file:
+    for at, step in ((1, 1e-6), (2, 2e-6)):
+        file[f"shot{at}/v"], file[f"shot{at}/time"] = wave(at), numpy.arange(200) * step
+        file[f"shot{at}/time"].attrs["units"] = "s"
+with h5py.File("attributes.h5", "w") as file:
+    for at, step in ((1, 1e-6), (2, 2e-6)):
+        file[f"shot{at}"] = wave(at)
+        file[f"shot{at}"].attrs["dt"] = step
+with h5py.File("shared.h5", "w") as file:
+    file["dt"], file["shot1/v"], file["shot2/v"] = 3e-6, wave(1), wave(2)
+with h5py.File("channels.h5", "w") as file:
+    for name, step in (("ch1", 1e-6), ("ch2", 2e-6)):
+        file[name] = wave(1)
+        file[name].attrs["dt"] = step
+with h5py.File("contradicted.h5", "w") as file:
+    file["v"], file["time_s"], file["dt"] = wave(1), numpy.arange(200) * 1e-6, 2e-6
+"#;
+    if python(&folder, &program).is_none() {
+        return;
+    }
+    let steps = |name: &str| -> Vec<f64> {
+        let records = all(&folder.join(name), &ReadOptions::default());
+        records.iter().map(|record| 1e6 * record.interval_s).collect()
+    };
+    for name in ["times.h5", "attributes.h5"] {
+        let found = steps(name);
+        assert!((found[0] - 1.0).abs() < 1e-9 && (found[1] - 2.0).abs() < 1e-9, "{found:?}");
+    }
+    assert_eq!(steps("shared.h5"), [3.0, 3.0]);
+    let unlike = read(&folder.join("channels.h5"), &ReadOptions::default()).next().unwrap();
+    let error = unlike.unwrap_err().to_string();
+    assert!(error.contains("intervals between samples of 1 and of 2 µs"), "{error}");
+    let taken = &all(&folder.join("contradicted.h5"), &ReadOptions::default())[0];
+    assert_eq!(taken.interval_s, 2e-6);
+    assert!(taken.notes.iter().any(|note| note.contains("of 1 µs and one of 2 µs")), "{taken:?}");
+}

@@ -102,3 +102,23 @@ numpy.savetxt("long.csv", numpy.array([numpy.arange(600) * 1e-6, long]).T, delim
         }
     }
 }
+
+#[test]
+fn chunks_of_odd_length_are_passed_over_with_the_byte_that_follows() {
+    let folder = folder("odd-chunk");
+    let chunk = |name: &[u8], bytes: &[u8]| {
+        let padding = &[0][..bytes.len() % 2];
+        [name, &(bytes.len() as u32).to_le_bytes(), bytes, padding].concat()
+    };
+    let format = [1_u16, 1, 16_960, 15, 33_920, 30, 2, 16].map(u16::to_le_bytes).concat();
+    let samples: Vec<u8> =
+        (0..200_i32).flat_map(|i| (i * i % 251 * 100).to_le_bytes()[..2].to_vec()).collect();
+    let parts = [chunk(b"junk", b"12345"), chunk(b"fmt ", &format), chunk(b"LIST", &[7; 17])];
+    let body = [b"WAVE".to_vec(), parts.concat(), chunk(b"data", &samples)].concat();
+    let path = folder.join("odd.wav");
+    std::fs::write(&path, chunk(b"RIFF", &body)).unwrap();
+    let records = all(&path, &ReadOptions::default());
+    assert_eq!((records.len(), records[0].interval_s), (1, 1e-6));
+    let volts = &records[0].channels[0].volts;
+    assert_eq!((volts.len(), volts[9]), (200, 8100.0 / 32_768.0));
+}

@@ -372,7 +372,7 @@ fn compared_text(alternatives: &AlternativeModels, comparison: &Comparison) -> S
         vec![
             alternative.name.clone(),
             criteria.parameters.to_string(),
-            digits(alternative.fit.chi_square(), 5),
+            digits(criteria.chi_square.map_or(alternative.fit.chi_square(), |of| of.value), 5),
             (criteria.chi_square).map_or("–".to_owned(), |found| found.freedom.to_string()),
             (criteria.chi_square).map_or("–".to_owned(), |found| digits(found.probability, 2)),
             digits(comparison.aicc_above_best[at], 4),
