@@ -31,8 +31,10 @@ pub(crate) struct HertzContact {
 impl HertzContact {
     /// The wall's; `None` without a wall pulse, material or unit.
     pub(crate) fn of_wall(units: Units, plan: &Plan, shot: &Shot) -> Option<Self> {
-        let force_n = shot.passage.as_ref().ok()?.wall.value;
-        Self::of(units, plan, (plan.chain.beads.len(), force_n))
+        let contact = plan.chain.beads.len();
+        let at_rest_n = plan.chain.system().ok()?.static_contact(contact).force_n;
+        let force_n = at_rest_n + shot.passage.as_ref().ok()?.wall.value;
+        Self::of(units, plan, (contact, force_n))
     }
 
     /// That of the highest pressure over its yield strength, where any is known; `None` without a material or unit.

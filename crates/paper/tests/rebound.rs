@@ -41,7 +41,8 @@ fn shot_sweep_and_reproduce_agree_on_the_rebound() {
             let shot = shoot(&plan(&experiment, *speed, 1e-9)).unwrap();
             let curve = reproduced.curve(case).unwrap();
             let by_reproduce = curve.at(*speed).unwrap().striker_rebound_m_s;
-            assert_eq!(*by_sweep, by_reproduce, "{case} at {speed}");
+            // `reproduce` may take a shot of a tenth of the accuracy, by another method.
+            assert!((by_sweep / by_reproduce - 1.0).abs() < 3e-6, "{case} at {speed}");
             let off = (by_sweep / end_m_s(&shot) - 1.0).abs();
             assert!(off < OF_REBOUND * accuracy, "{case} at {speed}: {off:e}");
         }

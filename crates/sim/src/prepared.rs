@@ -275,7 +275,8 @@ impl<'a> PreparedShot<'a> {
     fn balanced(&self, mut tolerance: f64) -> Result<(Shot, f64), StudyError> {
         let mut tries = 1;
         loop {
-            let mut shot = self.once(&accuracy::adaptive(self.plan, tolerance), self.plan.watch.is_some())?;
+            let mut shot =
+                self.once(&accuracy::adaptive(self.plan, tolerance), self.plan.watch.is_some())?;
             shot.tolerance = Some(tolerance);
             let excess = residual(&shot) / self.plan.accuracy;
             if excess.is_nan() || excess <= 1.0 || tolerance <= TIGHTEST || tries == MOST_TRIES {
@@ -564,10 +565,14 @@ impl<'a> PreparedShot<'a> {
         let at_end_m_s = outcome.velocity_m_s.first().filter(|_| own_end).copied();
         let at_end = at_end_m_s.map(|velocity_m_s| (outcome.time_s, velocity_m_s));
         let end = tracker.last_word().or(at_end);
+        let last_m_s = outcome.velocity_m_s.first().copied().unwrap_or_default();
         // In free flight the velocity stays as it is, and is right to the last bit at the end.
         let parted = |(own_s, own_m_s): (f64, f64)| match separation.last() {
-            Some((time_s, _)) if self.system.flies_free() => (time_s, own_m_s),
-            last => last.unwrap_or((own_s, own_m_s)),
+            Some((time_s, _)) if self.system.flies_free() && time_s <= own_s => (time_s, own_m_s),
+            Some(last) => last,
+            // In contact at the end: of the time that was asked for, if that is later.
+            None if self.plan.duration_s.is_some() => (outcome.time_s, last_m_s),
+            None => (own_s, own_m_s),
         };
         let end = end.map(parted);
         Shot {

@@ -25,8 +25,9 @@ pub struct Flight {
 pub struct Rebound {
     /// When it first let go of bead 1, in s, and its velocity then, in m/s.
     pub first: Option<(f64, f64)>,
-    /// Its velocity in m/s when it last let go of bead 1, before it was away for good or six times the
-    /// time that the pulse took to the wall had passed; at that time, if it was in contact then.
+    /// Its velocity in m/s when it last let go of bead 1, before it was away for good or six times the time that
+    /// the pulse took to the wall had passed, or before a later end that was asked for; at that time, if it was
+    /// in contact then.
     /// `None` when the plan does not follow it, or when a duration that was asked for was over before.
     pub end_m_s: Option<f64>,
     /// When it had that velocity, in s.

@@ -151,9 +151,11 @@ fn handed_on(plan: &Plan) -> Vec<f64> {
 fn is_away(piece: &Piece<'_>, theta: f64, handed_on: &[f64]) -> bool {
     let system = piece.system();
     let speed_m_s = -piece.body(0, theta).1;
+    let leaves = piece.leaving_energy_j(theta) > 0.0;
     let mut contacts = (0..system.contacts()).filter(|contact| system.has_contact(*contact));
     let mut others = handed_on.iter().zip(1..);
     contacts.all(|contact| piece.overlap(contact, theta).0 <= 0.0)
-        && (others.all(|(share, body)| speed_m_s > share * piece.body(body, theta).1.abs())
+        && (leaves
+            && others.all(|(share, body)| speed_m_s > share * piece.body(body, theta).1.abs())
             || Apart.step(piece) == Flow::Finished)
 }

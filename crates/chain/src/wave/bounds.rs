@@ -26,10 +26,11 @@ impl Piece<'_> {
         Some(moving + held)
     }
 
-    /// Kinetic energy of body 0 in J while it flies away from the chain, else 0.
+    /// Kinetic energy of body 0 in J while it flies away from the chain and no bridge holds it, else 0.
     pub fn leaving_energy_j(&self, theta: f64) -> f64 {
         let speed = self.body(0, theta).1;
-        match self.overlap(0, theta).0 < 0.0 && speed < 0.0 {
+        let free = self.overlap(0, theta).0 < 0.0 && !self.state.is_bridged(0);
+        match free && speed < 0.0 {
             true => 0.5 * self.system.mass_kg[0] * speed * speed,
             false => 0.0,
         }

@@ -11,7 +11,7 @@ use crate::chain::Tension;
 use crate::laws::{Closed, ContactState};
 use crate::sensor::Sensor;
 use crate::system::{FLUSH, System};
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -37,7 +37,7 @@ pub struct Piece<'a> {
     pub(super) slow: Option<&'a LongStep>,
     pub(super) meter: Option<&'a Meter>,
     /// The `θ` that was asked for last, and each stage's weights there.
-    pub(super) weights: Cell<(f64, StageWeights)>,
+    pub(super) weights: RefCell<(f64, StageWeights)>,
     /// Bends of bodies that were asked for within the step; `None` where the dense output has none.
     pub(super) bends: Option<RefCell<BTreeMap<usize, [f64; 2]>>>,
 }
@@ -215,9 +215,18 @@ impl Piece<'_> {
         let (x, v) = (self.state.x[body], self.state.v[body]);
         let h = self.step_s;
         let [mut sped, mut moved] = self.bent(body, theta);
-        for (a, [faster, further]) in self.accelerations.iter().zip(self.weights_at(theta)) {
-            sped += faster * a[body];
-            moved += further * a[body];
+        let mut weights = self.weights.borrow_mut();
+        let (at, weights) = &mut *weights;
+        if *at != theta {
+            let rows = self.table.dense_velocity.iter().zip(&self.table.dense_position);
+            for (weights, (velocity, position)) in weights.iter_mut().zip(rows) {
+                *weights = [polynomial(velocity, theta), polynomial(position, theta)];
+            }
+            *at = theta;
+        }
+        for (a, [faster, further]) in self.accelerations.iter().zip(weights) {
+            sped += *faster * a[body];
+            moved += *further * a[body];
         }
         (x + h * theta * v + h * h * moved, v + h * sped)
     }
@@ -256,18 +265,6 @@ impl Piece<'_> {
         let even = 24.0 * BEND * BEND * w - 6.0 * w * w;
         let odd = BEND * (24.0 * BEND * BEND * w - 18.0 * w * w);
         [0.5 * (before + after) / even, 0.5 * (after - before) / odd]
-    }
-
-    fn weights_at(&self, theta: f64) -> StageWeights {
-        let (at, mut weights) = self.weights.get();
-        if at != theta {
-            let rows = self.table.dense_velocity.iter().zip(&self.table.dense_position);
-            for (weights, (velocity, position)) in weights.iter_mut().zip(rows) {
-                *weights = [polynomial(velocity, theta), polynomial(position, theta)];
-            }
-            self.weights.set((theta, weights));
-        }
-        weights
     }
 
     /// Overlap in m (negative across a gap) and overlap rate in m/s of a contact.

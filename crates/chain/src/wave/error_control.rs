@@ -71,7 +71,8 @@ impl Wave<'_> {
         let length = speed * self.system.scales().time_s;
         let bodies = self.owned();
         let (set, scales) = (self.pass.set, (speed, length));
-        let (error, body) = error_norm(set, bodies, h, weights, &self.a[..self.table.stages()], scales);
+        let (error, body) =
+            error_norm(set, bodies, h, weights, &self.a[..self.table.stages()], scales);
         let (moved, contact) = self.state.states.error_m(h, &weights[0]);
         let (error, body) = match moved / length > error || moved.is_nan() {
             true => (moved / length, contact),

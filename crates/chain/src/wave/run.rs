@@ -15,7 +15,7 @@ use super::window::MovingBodies;
 use super::zones::LongStep;
 use super::{Control, Method};
 use crate::system::System;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::ops::Range;
 
 /// Runs one shot until an observer is finished or the duration is over.
@@ -302,7 +302,7 @@ impl<'a> Wave<'a> {
             },
             slow: self.slow.active.then_some(&self.slow),
             meter: self.meter.as_ref(),
-            weights: Cell::new((f64::NAN, StageWeights::default())),
+            weights: RefCell::new((f64::NAN, StageWeights::default())),
             bends: self.table.bends.then(RefCell::default),
         }
     }

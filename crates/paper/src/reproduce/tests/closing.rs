@@ -21,7 +21,7 @@ fn closed_gaps_just_touch_and_overlaps_and_velocities_stay() {
     let (plan, _) = Plan::from_experiment(&preset("dry").unwrap(), Some(0.1)).unwrap();
     let system = System::new(&plan.chain).unwrap();
     let wall_s = shoot(&plan).unwrap().passage.unwrap().wall.time_s;
-    let met = run(&system, &adaptive(1e-9), Limits::until(wall_s), &mut []).unwrap();
+    let met = run(&system, &adaptive(&plan, 1e-9), Limits::until(wall_s), &mut []).unwrap();
     let open = State::after(&system, &met);
     let mut closed = open.clone();
     close_gaps(&system, &mut closed);
