@@ -403,6 +403,30 @@ fn several_shots_that_are_not_plain_are_a_doubt_and_a_level_cuts_them() {
 }
 
 #[test]
+fn speeds_of_a_list_that_numbers_more_shots_than_were_cut_out_are_of_none() {
+    let file = recording(&folder("shifted"), &[9000.0, 2000.0, 9000.0]);
+    let speeds = |volts, lines: u32| {
+        let lines = (1..=lines).map(|shot| format!("long.csv,{shot},0.{shot}\n"));
+        let list = "file,shot,speed\n".to_owned() + &lines.collect::<String>();
+        let options = Options {
+            cutting: Cut::Level(Level { volts, samples: Some(4000) }),
+            list: Some(ShotList::parse(&list).unwrap()),
+            ..Options::default()
+        };
+        let found = measure(std::slice::from_ref(&file), &options, &());
+        let of = found.shots.iter().map(|shot| shot.speed_m_s.map(|speed| speed.value));
+        (of.collect::<Vec<_>>(), found.refused.first().map(ToString::to_string))
+    };
+    assert_eq!(speeds(1000.0, 3), (vec![Some(0.1), Some(0.2), Some(0.3)], None));
+    // The level passes over the second shot.
+    let (none, why) = speeds(5000.0, 3);
+    assert_eq!(none, [None, None]);
+    let why = why.unwrap();
+    assert!(why.contains("is cut into 2 shots, and the table of shots has speeds for 3"), "{why}");
+    assert_eq!(speeds(5000.0, 2).0, [Some(0.1), Some(0.2)]);
+}
+
+#[test]
 fn a_level_finds_the_same_shots_whatever_the_pieces() {
     let folder = folder("pieces");
     let path = folder.join("long.h5");
