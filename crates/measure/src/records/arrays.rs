@@ -266,8 +266,8 @@ impl Stated {
             let steps = times.iter().filter_map(|times| mean_step(times));
             one(steps.map(|step| step * unit_s).collect())
         };
-        let [interval_s, rate_s] = arrays.stated_s(names);
-        let of_samples_s = one(interval_s)?.or(one(rate_s)?);
+        let [by_interval_s, by_rate_s] = arrays.stated_s(names);
+        let of_samples_s = [one(by_interval_s)?, one(by_rate_s)?];
         let rate_s = one(values(RATES)?.concat().iter().map(|rate| rate.recip()).collect())?;
         let interval_s = one(values(INTERVALS)?.concat())?;
         let period_s = values(&[PERIOD])?.into_iter().filter(single).flatten().collect();
@@ -275,9 +275,10 @@ impl Stated {
         let unit_s = named.and_then(|name| seconds(&arrays.unit(name)?));
         let of_times_s = steps(values(TIMES)?, unit_s.or(options.time_unit_s).unwrap_or(1.0))?;
         let of_times_s = steps(values(TIMES_S)?, 1.0)?.or(of_times_s);
-        let all = [of_samples_s, interval_s, rate_s, one(period_s)?, of_times_s];
-        let taken = all.into_iter().flatten().next();
-        let mut contradictions = all.into_iter().filter_map(|other| both(other, taken, options));
+        let of_arrays_s = [interval_s, rate_s, one(period_s)?, of_times_s];
+        let all = || of_samples_s.into_iter().chain(of_arrays_s);
+        let taken = all().flatten().next();
+        let mut contradictions = all().filter_map(|other| both(other, taken, options));
         let assumed = || seconds_assumed(named?, unit_s, options).filter(|_| taken == of_times_s);
         Ok(Self { interval_s: taken, note: contradictions.next().or_else(assumed) })
     }

@@ -89,6 +89,9 @@ with h5py.File("channels.h5", "w") as file:
         file[name].attrs["dt"] = step
 with h5py.File("contradicted.h5", "w") as file:
     file["v"], file["time_s"], file["dt"] = wave(1), numpy.arange(200) * 1e-6, 2e-6
+with h5py.File("attributes-contradicted.h5", "w") as file:
+    file["v"] = wave(1)
+    file["v"].attrs["dt"], file["v"].attrs["fs"] = 2e-6, 1e6
 "#;
     if python(&folder, &program).is_none() {
         return;
@@ -105,7 +108,10 @@ with h5py.File("contradicted.h5", "w") as file:
     let unlike = read(&folder.join("channels.h5"), &ReadOptions::default()).next().unwrap();
     let error = unlike.unwrap_err().to_string();
     assert!(error.contains("intervals between samples of 1 and of 2 µs"), "{error}");
-    let taken = &all(&folder.join("contradicted.h5"), &ReadOptions::default())[0];
-    assert_eq!(taken.interval_s, 2e-6);
-    assert!(taken.notes.iter().any(|note| note.contains("of 1 µs and one of 2 µs")), "{taken:?}");
+    for name in ["contradicted.h5", "attributes-contradicted.h5"] {
+        let taken = &all(&folder.join(name), &ReadOptions::default())[0];
+        assert_eq!(taken.interval_s, 2e-6);
+        let noted = taken.notes.iter().any(|note| note.contains("of 1 µs and one of 2 µs"));
+        assert!(noted, "{:?}", taken.notes);
+    }
 }
