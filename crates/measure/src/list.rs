@@ -118,9 +118,10 @@ impl ShotList {
         of_file.filter_map(|entry| entry.shot).max().unwrap_or(0)
     }
 
-    /// Whether another list says the same of a shot.
+    /// Whether another list says the same of a shot, and numbers as many of its file.
     pub fn agrees_on(&self, other: &Self, shot: &Shot) -> bool {
         self.find(&shot.file, shot.shot) == other.find(&shot.file, shot.shot)
+            && self.most_shots(&shot.file) == other.most_shots(&shot.file)
     }
 
     pub(crate) fn find(&self, file: &Path, shot: Option<u64>) -> Option<&ListEntry> {

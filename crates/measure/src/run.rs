@@ -389,12 +389,13 @@ impl Measurement {
         let (Some(list), false) = (&options.list, options.cutting == Cut::Never) else {
             return;
         };
-        let mut found: IndexMap<PathBuf, u64> = IndexMap::new();
-        for shot in self.shots.iter().filter(|shot| shot.is_cut) {
-            *found.entry(shot.file.clone()).or_default() += 1;
+        let mut found: IndexMap<PathBuf, (u64, bool)> = IndexMap::new();
+        for shot in &self.shots {
+            let (count, is_cut) = found.entry(shot.file.clone()).or_default();
+            (*count, *is_cut) = (*count + 1, *is_cut || shot.is_cut);
         }
-        found.retain(|file, found| list.most_shots(file) > *found);
-        for (file, found) in found {
+        found.retain(|file, (count, is_cut)| *is_cut && list.most_shots(file) > *count);
+        for (file, (found, _)) in found {
             let examples = self.examples.iter_mut().chain(&mut self.flagged);
             let examples = examples.map(|example| &mut example.shot);
             let of_file = self.shots.iter_mut().chain(examples).filter(|shot| shot.file == file);

@@ -52,7 +52,8 @@ impl Expected {
         let crossing_s = system.scales().crossing_s;
         let duration_s = plan.duration_s.unwrap_or(WAYS * crossing_s);
         let bodies = system.bodies() as f64;
-        let order = match accuracy::is_of_order_8(plan) {
+        let adaptive = plan.method == Method::Adaptive;
+        let order = match adaptive && accuracy::is_of_order_8(plan) {
             true => 1 + usize::from(!keeps_energy(plan)),
             false => 0,
         };

@@ -253,7 +253,12 @@ impl Piece<'_> {
 
     /// α and β of a body.
     fn bend(&self, body: usize) -> [f64; 2] {
-        let quintic = Piece { bends: None, ..self.clone() };
+        let quintic = Piece {
+            window: self.window.clone(),
+            weights: RefCell::new((f64::NAN, StageWeights::default())),
+            bends: None,
+            ..*self
+        };
         let missing = |theta: f64| {
             let slopes = self.table.dense_velocity.iter().map(|row| slope(row, theta));
             let of_quintic: f64 =

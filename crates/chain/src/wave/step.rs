@@ -21,25 +21,18 @@ pub(super) fn stage(
 ) {
     let start = (&x[bodies.clone()], &v[bodies.clone()]);
     let out = (&mut x_out[bodies.clone()], &mut v_out[bodies.clone()]);
-    let weights = (position, velocity);
-    let step = (h, node);
+    let (weights, step) = ((position, velocity), (h, node));
+    macro_rules! of_stages {
+        ($simd:ident, $($count:literal)+) => {
+            match velocity.len() {
+                $($count => combine::<_, $count>($simd, bodies, step, weights, start, a, out),)+
+                _ => combine::<_, 13>($simd, bodies, step, weights, start, a, out),
+            }
+        };
+    }
     dispatch!(set.level(), simd => simd.vectorize(
         #[inline(always)]
-        || match velocity.len() {
-            1 => combine::<_, 1>(simd, bodies, step, weights, start, a, out),
-            2 => combine::<_, 2>(simd, bodies, step, weights, start, a, out),
-            3 => combine::<_, 3>(simd, bodies, step, weights, start, a, out),
-            4 => combine::<_, 4>(simd, bodies, step, weights, start, a, out),
-            5 => combine::<_, 5>(simd, bodies, step, weights, start, a, out),
-            6 => combine::<_, 6>(simd, bodies, step, weights, start, a, out),
-            7 => combine::<_, 7>(simd, bodies, step, weights, start, a, out),
-            8 => combine::<_, 8>(simd, bodies, step, weights, start, a, out),
-            9 => combine::<_, 9>(simd, bodies, step, weights, start, a, out),
-            10 => combine::<_, 10>(simd, bodies, step, weights, start, a, out),
-            11 => combine::<_, 11>(simd, bodies, step, weights, start, a, out),
-            12 => combine::<_, 12>(simd, bodies, step, weights, start, a, out),
-            _ => combine::<_, 13>(simd, bodies, step, weights, start, a, out),
-        }
+        || of_stages!(simd, 1 2 3 4 5 6 7 8 9 10 11 12)
     ));
 }
 

@@ -4,6 +4,7 @@ use super::{Data, DataRow, Freedom, Observable};
 use crate::InferError;
 use csv::{ReaderBuilder, Trim};
 use hertzchain_measure::signal::Estimate;
+use std::collections::HashSet;
 
 /// Number of shots from whose scatter standard errors come. Fits widen
 /// such errors by what their own uncertainty costs.
@@ -232,11 +233,11 @@ fn unclear(titles: &[String], wanted: &[Observable], file: &str) -> Result<(), I
              fit their means: `speeds.csv` of the same folder, in Python what `measure` returned"
         ));
     }
-    let twice = |(at, title): (usize, &String)| titles[..at].contains(title).then(|| title.clone());
     let read = ["speed", "tof_", "shots", "case"].into_iter();
     let read = read.chain(Observable::ALL.map(|of| of.column()));
-    let is_read = |title: &String| read.clone().any(|stem| title.starts_with(stem));
-    if let Some(column) = titles.iter().enumerate().filter_map(twice).find(is_read) {
+    let is_read = |title: &&String| read.clone().any(|stem| title.starts_with(stem));
+    let mut seen = HashSet::new();
+    if let Some(column) = titles.iter().filter(is_read).find(|title| !seen.insert(*title)) {
         return InferError::input(format!("{file}: column `{column}` stands there twice"));
     }
     for of in wanted.iter().filter(|of| of.is_time()) {

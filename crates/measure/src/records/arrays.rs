@@ -21,6 +21,10 @@ pub(crate) const RATES: &[&str] =
     &["fs", "rate", "rate_hz", "sample_rate", "sample_rate_hz", "sampling_rate", "samplerate"];
 /// Two intervals that differ by more are not one that was rounded.
 const SAME: f64 = 1e-3;
+/// Share by which intervals of one array may differ.
+const JITTER: f64 = 1e-2;
+/// So many samples are not looked at one by one, for which numbers are about them.
+const MOST_CHOSEN: usize = 64;
 /// Name of a single number that is an interval in s, if below [`LONGEST_S`]; else of times.
 const PERIOD: &str = "ts";
 const LONGEST_S: f64 = 1.0;
@@ -197,7 +201,8 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
     if samples.is_empty() {
         return Err(no_samples(arrays.file(), &names));
     }
-    let mut stated = Stated::of_all(&*arrays, &names, &samples, options)?;
+    let groups = Groups::of(&names, &samples, options);
+    let mut stated = Stated::of_all(&*arrays, (&names, &samples), &groups, options)?;
     let mut read = options.clone();
     if let Some((others, step)) = time_column(&*arrays, &samples, options) {
         read = others;
@@ -208,8 +213,7 @@ pub(crate) fn open(arrays: Rc<dyn Arrays>, options: &ReadOptions) -> Result<Raw>
         }
     }
     let note = stated.note.clone();
-    let (records, recordings) =
-        of_samples(&arrays, samples, (Rc::new(Groups::of(&names)), stated), &read)?;
+    let (records, recordings) = of_samples(&arrays, samples, (Rc::new(groups), stated), &read)?;
     Ok(with_speeds(records, speeds, recordings, note))
 }
 
@@ -225,21 +229,40 @@ struct Stated {
 }
 
 impl Stated {
-    /// What a file states for all of its samples: no array of a single shot has a say in that of others.
+    /// What a file states for all of its samples: no array of a single shot has a say in that of others, nor one
+    /// of another group where those about the samples say it.
     fn of_all(
         arrays: &dyn Arrays,
-        names: &[String],
-        samples: &[String],
+        (names, samples): (&[String], &[String]),
+        groups: &Groups,
         options: &ReadOptions,
     ) -> Result<Self> {
-        let (shots, are_groups) = shots(samples, options).unwrap_or_default();
-        let own: HashSet<&str> = shots.iter().flatten().map(String::as_str).collect();
-        let first = shots.iter().filter(|_| are_groups).filter_map(|shot| shot.first());
-        let groups: HashSet<&str> = first.filter_map(|first| above(first).next()).collect();
-        let is_own =
-            |name: &str| own.contains(name) || above(name).any(|group| groups.contains(group));
-        let shared: Vec<String> = names.iter().filter(|name| !is_own(name)).cloned().collect();
-        let mut found = Self::of(arrays, &shared, options)?;
+        let singles = shots(samples, options).filter(|found| !found.1);
+        let singles: HashSet<String> =
+            singles.map(|found| found.0.concat()).into_iter().flatten().collect();
+        let is_shared = |name: &&String| !singles.contains(*name) && !groups.has(name);
+        let shared: Vec<String> = names.iter().filter(is_shared).cloned().collect();
+        let is_chosen = |name: &&String| {
+            let mut chosen = options.channels.iter();
+            options.channels.is_empty() || chosen.any(|of| of == *name || of == last(name))
+        };
+        let chosen: Vec<&String> = samples.iter().filter(is_chosen).collect();
+        let all: HashSet<&String> = samples.iter().collect();
+        let about: HashSet<&str> =
+            chosen.iter().map(|name| above(name).next().unwrap_or_default()).collect();
+        let is_about = |name: &&String| {
+            let group = above(name).next().unwrap_or_default();
+            let is_other = all.contains(name) && !chosen.contains(name);
+            !is_other && (group.is_empty() || about.contains(group))
+        };
+        let near: Vec<String> = match chosen.len() {
+            0..MOST_CHOSEN => shared.iter().filter(is_about).cloned().collect(),
+            _ => shared.clone(),
+        };
+        let mut found = Self::of(arrays, &near, options)?;
+        if found.interval_s.is_none() {
+            found = Self::of(arrays, &shared, options)?;
+        }
         if found.interval_s.is_none() {
             let [interval_s, rate_s] = arrays.stated_anywhere_s();
             found.interval_s = interval_s.or(rate_s);
@@ -262,25 +285,34 @@ impl Stated {
         };
         let one = |of: Vec<f64>| one_interval(file, of, options);
         let single = |found: &Vec<f64>| found.len() == 1 && found[0] < LONGEST_S;
-        let steps = |times: Vec<Vec<f64>>, unit_s: f64| {
-            let steps = times.iter().filter_map(|times| mean_step(times));
-            one(steps.map(|step| step * unit_s).collect())
+        let steps = |times: Vec<Vec<f64>>, unit_s: f64| -> Vec<f64> {
+            times.iter().filter_map(|times| Some(mean_step(times)? * unit_s)).collect()
         };
         let [by_interval_s, by_rate_s] = arrays.stated_s(names);
-        let of_samples_s = [one(by_interval_s)?, one(by_rate_s)?];
-        let rate_s = one(values(RATES)?.concat().iter().map(|rate| rate.recip()).collect())?;
-        let interval_s = one(values(INTERVALS)?.concat())?;
+        let rates = values(RATES)?.into_iter().map(steadied).collect::<Vec<_>>().concat();
+        let intervals = values(INTERVALS)?.into_iter().map(steadied).collect::<Vec<_>>().concat();
         let period_s = values(&[PERIOD])?.into_iter().filter(single).flatten().collect();
+        let stated = [
+            one(by_interval_s)?,
+            one(by_rate_s)?,
+            one(intervals)?,
+            one(rates.iter().map(|rate| rate.recip()).collect())?,
+            one(period_s)?,
+        ];
         let named = names.iter().find(|name| is(TIMES, name));
         let unit_s = named.and_then(|name| seconds(&arrays.unit(name)?));
-        let of_times_s = steps(values(TIMES)?, unit_s.or(options.time_unit_s).unwrap_or(1.0))?;
-        let of_times_s = steps(values(TIMES_S)?, 1.0)?.or(of_times_s);
-        let of_arrays_s = [interval_s, rate_s, one(period_s)?, of_times_s];
-        let all = || of_samples_s.into_iter().chain(of_arrays_s);
-        let taken = all().flatten().next();
-        let mut contradictions = all().filter_map(|other| both(other, taken, options));
-        let assumed = || seconds_assumed(named?, unit_s, options).filter(|_| taken == of_times_s);
-        Ok(Self { interval_s: taken, note: contradictions.next().or_else(assumed) })
+        let mut of_times = steps(values(TIMES_S)?, 1.0);
+        of_times.extend(steps(values(TIMES)?, unit_s.or(options.time_unit_s).unwrap_or(1.0)));
+        let taken = match stated.into_iter().flatten().next() {
+            Some(stated) => Some(stated),
+            None => one(of_times.clone())?,
+        };
+        let all = stated.into_iter().chain(of_times.into_iter().map(Some));
+        let contradiction = all.filter_map(|other| both(other, taken, options)).next();
+        let is_assumed =
+            stated.iter().all(Option::is_none) && !names.iter().any(|it| is(TIMES_S, it));
+        let assumed = || seconds_assumed(named?, unit_s, options).filter(|_| is_assumed);
+        Ok(Self { interval_s: taken, note: contradiction.or_else(assumed) })
     }
 
     /// The interval in s, with what the options say.
@@ -290,18 +322,27 @@ impl Stated {
     }
 }
 
-/// The arrays in each group, those of its own groups included.
+/// The arrays in each shot's group, those of its own groups included.
 struct Groups(HashMap<String, Vec<String>>);
 
 impl Groups {
-    fn of(names: &[String]) -> Self {
-        let mut groups: HashMap<String, Vec<String>> = HashMap::new();
-        for name in names {
-            for group in above(name) {
+    fn of(names: &[String], samples: &[String], options: &ReadOptions) -> Self {
+        let shots = shots(samples, options).filter(|found| found.1);
+        let first = shots.iter().flat_map(|found| &found.0).filter_map(|shot| shot.first());
+        let parents = first.filter_map(|first| Some(above(first).next()?.to_owned()));
+        let mut groups: HashMap<String, Vec<String>> =
+            parents.map(|group| (group, Vec::new())).collect();
+        for name in names.iter().filter(|_| !groups.is_empty()).collect::<Vec<_>>() {
+            if let Some(group) = above(name).find(|group| groups.contains_key(*group)) {
                 groups.entry(group.to_owned()).or_default().push(name.clone());
             }
         }
         Self(groups)
+    }
+
+    /// Whether an array is in a shot's group.
+    fn has(&self, name: &str) -> bool {
+        !self.0.is_empty() && above(name).any(|group| self.0.contains_key(group))
     }
 
     /// The arrays that are a shot's own: those of its group, or it alone.
@@ -322,6 +363,15 @@ fn both(other_s: Option<f64>, taken_s: Option<f64>, options: &ReadOptions) -> Op
     let (other, taken) = other_s.zip(taken_s)?;
     let differ = options.rate_hz.is_none() && (other / taken - 1.0).abs() > SAME;
     differ.then(|| other_interval(other, taken))
+}
+
+/// The mean of numbers of one array that differ by no more than a clock's jitter; else all of them.
+fn steadied(values: Vec<f64>) -> Vec<f64> {
+    let Some(&first) = values.first().filter(|first| **first > 0.0) else {
+        return values;
+    };
+    let is_steady = values.iter().all(|value| (value / first - 1.0).abs() < JITTER);
+    if is_steady { vec![values.iter().sum::<f64>() / values.len() as f64] } else { values }
 }
 
 /// The one interval in s that several numbers state; unlike ones are not those of one recording.

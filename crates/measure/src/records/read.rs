@@ -8,7 +8,7 @@ use crate::records::options::{Parts, ReadOptions};
 use crate::records::record::{Channel, Record, SEPARATE};
 use crate::records::stored::from_sample;
 use crate::records::{mat, numpy, tdms, text, wav};
-use crate::signal::extremes;
+use crate::signal::{extremes, median};
 use std::fs::File;
 use std::io::Read;
 use std::ops::{Range, RangeInclusive};
@@ -176,7 +176,9 @@ impl Records {
         let mut gaps = Vec::new();
         for channel in &mut record.channels {
             gaps.extend(fill_gaps(&record.source, channel)?);
-            gaps.extend(fill_dropouts(&mut channel.volts));
+            if !is_piece {
+                gaps.extend(fill_dropouts(&mut channel.volts));
+            }
         }
         record.gaps = gaps;
         for channel in &record.channels {
@@ -245,18 +247,32 @@ fn fill_gaps(source: &str, channel: &mut Channel) -> Result<Vec<Range<usize>>> {
 
 /// Lengths of dropouts: of fewer samples they are spikes.
 const DROPOUT: RangeInclusive<usize> = 3..=64;
-/// Least step on either side of a dropout, as a share of the record's range and over the step beside it: the flanks
-/// of a pulse of six samples are not as steep, and a clipped top is not left as abruptly.
-const ABRUPT: (f64, f64) = (0.25, 3.0);
+/// Least step on either side of a dropout, as a share of the record's range, over the step beside it, and over the
+/// usual step: the flanks of a pulse of six samples are not as steep, nor is a digitiser's step as high.
+const ABRUPT: [f64; 3] = [0.25, 3.0, 16.0];
+/// Samples from which the middle and the usual step are taken.
+const LOOKED_AT: usize = 1 << 16;
+/// Least distance from the middle of all samples of what is lost, as a share of the range.
+const LOST: f64 = 0.1;
 
 /// Fills runs of one value that a signal jumps to and back from, as where samples were lost; returns them.
+/// It jumps towards the baseline: what it jumps to from there is a clipped top or a square pulse.
 fn fill_dropouts(volts: &mut [f64]) -> Vec<Range<usize>> {
     let ends = extremes(volts);
-    let least = ABRUPT.0 * (ends.1 - ends.0);
-    let is_abrupt = |value: f64, beside: [f64; 2]| {
-        let step = beside[0] - value;
-        let steep = step.abs() > ABRUPT.1 * (beside[1] - beside[0]).abs();
-        Some(step).filter(|step| step.abs() > least && steep)
+    let range = ends.1 - ends.0;
+    let stride = volts.len().div_ceil(LOOKED_AT).max(1);
+    let pairs = volts.windows(2).step_by(stride);
+    let moves: Vec<f64> = pairs.map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let moves: Vec<f64> = moves.into_iter().filter(|size| *size > 0.0).collect();
+    let some: Vec<f64> = volts.iter().step_by(stride).copied().collect();
+    let (Some(middle), Some(usual)) = (median(&some), median(&moves)) else {
+        return Vec::new();
+    };
+    let least = (ABRUPT[0] * range).max(ABRUPT[2] * usual);
+    let is_lost = |value: f64, [beside, next]: [f64; 2]| {
+        let (step, off) = (beside - value, beside - middle);
+        let steep = step.abs() > least.max(ABRUPT[1] * (next - beside).abs());
+        Some(step).filter(|step| steep && step * off > 0.0 && off.abs() > LOST * range)
     };
     let mut begin = 0;
     let runs = volts.chunk_by(|one, next| one == next).filter_map(|run| {
@@ -265,8 +281,8 @@ fn fill_dropouts(volts: &mut [f64]) -> Vec<Range<usize>> {
         let length = DROPOUT.contains(&run.len());
         let before = volts.get(gap.start.checked_sub(2)?..gap.start).filter(|_| length)?;
         let after = volts.get(gap.end..gap.end + 2)?;
-        let steps = [[before[1], before[0]], [after[0], after[1]]];
-        let [down, up] = steps.map(|beside| is_abrupt(run[0], beside));
+        let [down, up] =
+            [[before[1], before[0]], [after[0], after[1]]].map(|beside| is_lost(run[0], beside));
         (down? * up? > 0.0).then_some(gap)
     });
     let dropouts: Vec<Range<usize>> = runs.collect();

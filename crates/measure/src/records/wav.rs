@@ -7,7 +7,7 @@ use crate::records::read::Raw;
 use crate::records::stored::{Head, NumberKind, StoredChannel, StoredNumber};
 use hound::{SampleFormat, WavReader, WavSpec};
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// Opens a WAV file; its whole numbers are shares of the full scale.
@@ -43,7 +43,7 @@ pub(crate) fn open(file: &Path, options: &ReadOptions) -> Result<Raw> {
 }
 
 /// Bytes of a chunk that says how samples are stored, at most.
-const MOST_FORMAT: u64 = 64;
+const MOST_FORMAT: u32 = 64;
 
 /// The file's header without chunks that say nothing of samples, up to these: hound does not expect the byte
 /// that follows a chunk of odd length.
@@ -57,15 +57,18 @@ fn header(reader: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
             return Ok(header);
         };
         let length = length.try_into().map_or(0, u32::from_le_bytes);
-        let (length, padded) = (u64::from(length), i64::from(length) + i64::from(length % 2));
         match &[a, b, c, d] {
             b"data" => return Ok([header, chunk].concat()),
             b"fmt " if length <= MOST_FORMAT => {
                 header.append(&mut chunk);
-                reader.by_ref().take(length).read_to_end(&mut header)?;
-                reader.seek_relative(padded - length as i64)?;
+                reader.by_ref().take(length.into()).read_to_end(&mut header)?;
             }
-            _ => reader.seek_relative(padded)?,
+            _ => reader.seek(SeekFrom::Current(length.into())).map(drop)?,
+        }
+        // Not every program writes it, and no chunk's name begins with 0.
+        let mut padding = [0];
+        if length % 2 == 1 && reader.read(&mut padding)? == 1 && padding != [0] {
+            reader.seek(SeekFrom::Current(-1))?;
         }
     }
 }

@@ -82,8 +82,8 @@ fn calm(quiet: &[f64]) -> Vec<f64> {
     }
 }
 
-/// 1 + 2 Σ ρ_k until the first ρ_k within twice its own error, which in white noise is the first of all, or of
-/// the other sign: the half periods of a sine would cancel, though a pulse sees one of them.
+/// 1 + 2 Σ ρ_k until the first ρ_k within twice its own error, which in white noise is the first of all, or below
+/// 0 where neighbours are alike: the half periods of a sine would cancel, though a pulse sees one of them.
 fn correlation(noise: &[f64]) -> f64 {
     let lagged = |k: usize| -> f64 {
         let later = noise.iter().skip(k);
@@ -91,13 +91,14 @@ fn correlation(noise: &[f64]) -> f64 {
     };
     let power = lagged(0);
     let least = 2.0 / (noise.len() as f64).sqrt();
-    let (mut sum, mut first) = (1.0, 0.0);
+    let alike = lagged(1) > 0.0;
+    let mut sum = 1.0;
     for k in 1..noise.len() / 4 {
         let rho = lagged(k) / power;
-        if rho.abs() < least || rho.is_nan() || rho * first < 0.0 {
+        if rho.abs() < least || rho.is_nan() || (alike && rho < 0.0) {
             break;
         }
-        (sum, first) = (sum + 2.0 * rho, rho);
+        sum += 2.0 * rho;
     }
     sum.max(0.1)
 }

@@ -264,4 +264,11 @@ fn lost_samples_in_a_pulse_are_gaps_and_flat_tops_and_quiet_are_none() {
     assert_eq!(of("lost.csv", &lost), [(502, 508)]);
     assert_eq!(of("clipped.csv", &clipped), []);
     assert_eq!(of("whole.csv", &bell), []);
+    // Three samples across, clipped; a square; a digitiser that goes up and down by one step.
+    let narrow = |i: usize| (-0.5 * (i as f64 - 500.0).powi(2)).exp().min(0.58) + 1e-4 * volt(i);
+    let square = |i: usize| f64::from(u8::from((500..520).contains(&i)));
+    let stepped = |i: usize| f64::from(u8::from(i % 5 > 1));
+    assert_eq!(of("narrow.csv", &narrow), []);
+    assert_eq!(of("square.csv", &square), []);
+    assert_eq!(of("stepped.csv", &stepped), []);
 }

@@ -89,6 +89,12 @@ with h5py.File("channels.h5", "w") as file:
         file[name].attrs["dt"] = step
 with h5py.File("contradicted.h5", "w") as file:
     file["v"], file["time_s"], file["dt"] = wave(1), numpy.arange(200) * 1e-6, 2e-6
+with h5py.File("others.h5", "w") as file:
+    file["ch1"], file["dt"], file["time_s"] = wave(1), 1e-6, numpy.arange(200) * 1e-6
+    file["temperature/time"] = numpy.arange(20.0)
+    file["trigger/volts"], file["trigger/fs"] = wave(2), 1e3
+with h5py.File("jitter.h5", "w") as file:
+    file["v"], file["dt"] = wave(1), 1e-6 * (1 + 1e-3 * numpy.sin(numpy.arange(200)))
 with h5py.File("attributes-contradicted.h5", "w") as file:
     file["v"] = wave(1)
     file["v"].attrs["dt"], file["v"].attrs["fs"] = 2e-6, 1e6
@@ -108,6 +114,10 @@ with h5py.File("attributes-contradicted.h5", "w") as file:
     let unlike = read(&folder.join("channels.h5"), &ReadOptions::default()).next().unwrap();
     let error = unlike.unwrap_err().to_string();
     assert!(error.contains("intervals between samples of 1 and of 2 µs"), "{error}");
+    let ch1 = ReadOptions { channels: vec!["ch1".to_owned()], ..ReadOptions::default() };
+    let ch1 = all(&folder.join("others.h5"), &ch1);
+    assert_eq!((ch1[0].interval_s, ch1[0].notes.len()), (1e-6, 0), "{:?}", ch1[0].notes);
+    assert!((steps("jitter.h5")[0] - 1.0).abs() < 1e-4);
     for name in ["contradicted.h5", "attributes-contradicted.h5"] {
         let taken = &all(&folder.join(name), &ReadOptions::default())[0];
         assert_eq!(taken.interval_s, 2e-6);

@@ -114,11 +114,15 @@ fn chunks_of_odd_length_are_passed_over_with_the_byte_that_follows() {
     let samples: Vec<u8> =
         (0..200_i32).flat_map(|i| (i * i % 251 * 100).to_le_bytes()[..2].to_vec()).collect();
     let parts = [chunk(b"junk", b"12345"), chunk(b"fmt ", &format), chunk(b"LIST", &[7; 17])];
-    let body = [b"WAVE".to_vec(), parts.concat(), chunk(b"data", &samples)].concat();
-    let path = folder.join("odd.wav");
-    std::fs::write(&path, chunk(b"RIFF", &body)).unwrap();
-    let records = all(&path, &ReadOptions::default());
-    assert_eq!((records.len(), records[0].interval_s), (1, 1e-6));
-    let volts = &records[0].channels[0].volts;
-    assert_eq!((volts.len(), volts[9]), (200, 8100.0 / 32_768.0));
+    let data = chunk(b"data", &samples);
+    let padded = [b"WAVE".to_vec(), parts.concat(), data.clone()].concat();
+    let bare = [b"WAVE", &parts[1][..], &parts[0][..13], &data].concat();
+    for (name, body) in [("padded.wav", padded), ("bare.wav", bare)] {
+        let path = folder.join(name);
+        std::fs::write(&path, chunk(b"RIFF", &body)).unwrap();
+        let records = all(&path, &ReadOptions::default());
+        assert_eq!((records.len(), records[0].interval_s), (1, 1e-6));
+        let volts = &records[0].channels[0].volts;
+        assert_eq!((volts.len(), volts[9]), (200, 8100.0 / 32_768.0));
+    }
 }
