@@ -253,7 +253,7 @@ const ABRUPT: [f64; 3] = [0.25, 3.0, 16.0];
 /// Samples from which the middle and the usual step are taken.
 const LOOKED_AT: usize = 1 << 16;
 /// Least distance from the middle of all samples of what is lost, as a share of the range.
-const LOST: f64 = 0.1;
+const OFF_MIDDLE: f64 = 0.1;
 
 /// Fills runs of one value that a signal jumps to and back from, as where samples were lost; returns them.
 /// It jumps towards the baseline: what it jumps to from there is a clipped top or a square pulse.
@@ -269,10 +269,10 @@ fn fill_dropouts(volts: &mut [f64]) -> Vec<Range<usize>> {
         return Vec::new();
     };
     let least = (ABRUPT[0] * range).max(ABRUPT[2] * usual);
-    let is_lost = |value: f64, [beside, next]: [f64; 2]| {
+    let is_dropout = |value: f64, [beside, next]: [f64; 2]| {
         let (step, off) = (beside - value, beside - middle);
         let steep = step.abs() > least.max(ABRUPT[1] * (next - beside).abs());
-        Some(step).filter(|step| steep && step * off > 0.0 && off.abs() > LOST * range)
+        Some(step).filter(|step| steep && step * off > 0.0 && off.abs() > OFF_MIDDLE * range)
     };
     let mut begin = 0;
     let runs = volts.chunk_by(|one, next| one == next).filter_map(|run| {
@@ -282,7 +282,7 @@ fn fill_dropouts(volts: &mut [f64]) -> Vec<Range<usize>> {
         let before = volts.get(gap.start.checked_sub(2)?..gap.start).filter(|_| length)?;
         let after = volts.get(gap.end..gap.end + 2)?;
         let [down, up] =
-            [[before[1], before[0]], [after[0], after[1]]].map(|beside| is_lost(run[0], beside));
+            [[before[1], before[0]], [after[0], after[1]]].map(|beside| is_dropout(run[0], beside));
         (down? * up? > 0.0).then_some(gap)
     });
     let dropouts: Vec<Range<usize>> = runs.collect();
