@@ -41,7 +41,7 @@ fn parse_positive(
         parse_unit(unit).is_ok_and(|unit| found.dimension.agrees_with(&unit.dimension))
     };
     match found.value {
-        _ if !fits("1") && !fits(unit) => {
+        _ if !(fits("1") && !text.ends_with('%') || fits(unit)) => {
             refused(format!("`{text}` is {}, not {quantity}", found.dimension.name()))
         }
         value if value > 0.0 => Ok(value),

@@ -262,8 +262,8 @@ fn fill_dropouts(volts: &mut [f64]) -> Vec<Range<usize>> {
     let range = ends.1 - ends.0;
     let stride = volts.len().div_ceil(LOOKED_AT).max(1);
     let pairs = volts.windows(2).step_by(stride);
-    let moves: Vec<f64> = pairs.map(|pair| (pair[1] - pair[0]).abs()).collect();
-    let moves: Vec<f64> = moves.into_iter().filter(|size| *size > 0.0).collect();
+    let moves = pairs.map(|pair| (pair[1] - pair[0]).abs()).filter(|size| *size > 0.0);
+    let moves: Vec<f64> = moves.collect();
     let some: Vec<f64> = volts.iter().step_by(stride).copied().collect();
     let (Some(middle), Some(usual)) = (median(&some), median(&moves)) else {
         return Vec::new();

@@ -4,6 +4,7 @@ use super::*;
 fn speeds_have_units_or_none() {
     assert_eq!(parse_speed(" 0.5 m/s").unwrap(), 0.5);
     assert_eq!(parse_speed("500 mm/s").unwrap(), 0.5);
+    assert!(parse_speed("50 %").unwrap_err().to_string().contains("not a speed"));
     assert_eq!(parse_speeds("0.1, 0.2 m/s,500 mm/s").unwrap(), [0.1, 0.2, 0.5]);
 }
 
