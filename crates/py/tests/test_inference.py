@@ -212,12 +212,20 @@ def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
         (7, {"free": "B"}, "expected a file"),
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "beta", "tof_error": 1e-6, "speed_error": 1e-6}, "beta"),
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": []}, "nothing is free"),
+        ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": None}, "nothing is free"),
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "B", "method": "guess"}, "posterior"),
     ],
 )
 def test_what_makes_no_sense_is_refused_in_words(data, options, words):
     with pytest.raises(hc.HertzchainError, match=words):
         hc.fit(data, **options)
+
+
+def test_a_printed_fit_says_that_the_model_does_not_follow_the_data() -> None:
+    measured = hc.sweep("dry", np.geomspace(0.2, 1.0, 5))
+    how = {"tof_error": "0.1 us", "speed_error": 0}
+    assert "does not follow" in repr(hc.fit(measured, "hertz", free="Y", **how))
+    assert "does not follow" not in repr(hc.fit(measured, "dry", free="eta", **how))
 
 
 def test_several_tables_are_fitted_together_with_a_systematic_error() -> None:

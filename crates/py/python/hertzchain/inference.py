@@ -215,7 +215,7 @@ def gauge(
 
 def _named(free: str | Iterable[str]) -> list[str]:
     """Names of free numbers, at least one."""
-    names = free.split(",") if isinstance(free, str) else list(free)
+    names = free.split(",") if isinstance(free, str) else list(free or ())
     if not names:
         raise OptionError('nothing is free: free names numbers, such as "eta,B"')
     return names

@@ -829,9 +829,9 @@ class FitResult(Result):
         known = self.details
         rows = {name: str(parameter) for name, parameter in self.parameters.items()}
         if (goodness := self.chi_square) is not None:
-            rows["χ²/ν"] = f"{short(goodness['value'], 4)}/{goodness['freedom']}, p = {short(goodness['probability'], 2)}"
-        if (assumed := known.get("assumed")) is not None:
-            rows["assumed"] = assumed
+            misfit = ", the model does not follow the data" if known.get("follows_data") is False else ""
+            rows["χ²/ν"] = f"{short(goodness['value'], 4)}/{goodness['freedom']}, p = {short(goodness['probability'], 2)}{misfit}"
+        rows |= {} if known.get("assumed") is None else {"assumed": known["assumed"]}
         rows |= {"not determined": direction["words"] for direction in known["not_determined"]}
         if not self.converged:
             rows["warning"] = "the descent did not come to a minimum"
