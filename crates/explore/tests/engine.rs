@@ -146,6 +146,9 @@ fn an_edit_without_a_place_is_refused() {
     let edits = json!([{ "path": ["beads", 7, "radius"], "value": "7 mm" }]);
     let refused = refusal(json!({ "verb": "check", "text": text("dry"), "edits": edits }));
     assert_eq!(refused, Refusal::Error("no value at beads[7].radius".to_owned()));
+    let deep = json!([{ "path": vec!["a"; 60_000], "value": 1 }]);
+    let refused = refusal(json!({ "verb": "check", "text": text("dry"), "edits": deep }));
+    assert_eq!(refused, Refusal::Error("a path of 60000 keys: expected at most 32".to_owned()));
 }
 
 #[test]

@@ -299,10 +299,17 @@ impl ListColumns {
         };
         let pick = |text| value(text, "time in s after the first sample", 0.0);
         let [incident, wall, reflected] = picks;
+        let picks_s = [pick(incident)?, pick(wall)?, pick(reflected)?];
+        let pick_error_s = value(pick_error, "error of a pick in s above 0", f64::MIN_POSITIVE)?;
+        if pick_error_s.is_some() && picks_s == [None; 3] {
+            return Err(MeasureError::List(format!(
+                "line {line} has an error of a pick and no pick"
+            )));
+        }
         Ok(ListEntry {
             line,
-            picks_s: [pick(incident)?, pick(wall)?, pick(reflected)?],
-            pick_error_s: value(pick_error, "error of a pick in s", 0.0)?,
+            picks_s,
+            pick_error_s,
             speed_m_s: value(speed, "speed in m/s above 0", f64::MIN_POSITIVE)?,
             file: file.ok_or_else(no_file)?.to_owned(),
             shot: shot.map(number).transpose()?,

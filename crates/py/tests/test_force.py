@@ -86,3 +86,9 @@ def test_a_law_that_makes_no_sense_is_refused():
         hc.shot(row("elastic_hertz"), forces=hc.ForceLaw(lambda overlap, rate: np.nan * overlap))
     with pytest.raises(hc.OptionError, match="contact 30"):
         hc.shot(row("elastic_hertz"), forces=hc.ForceLaw(hertz, first=30))
+
+
+def test_what_is_no_force_law_is_refused_in_words() -> None:
+    with pytest.raises(hc.OptionError, match="forces takes ForceLaw"):
+        hc.shot(row("elastic_hertz"), forces="abc")
+    assert hc.shot(row("elastic_hertz"), forces=None, trace=None).trace is None

@@ -213,6 +213,8 @@ def test_a_fit_of_recordings_is_that_of_the_command_line(cli, tmp_path):
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "beta", "tof_error": 1e-6, "speed_error": 1e-6}, "beta"),
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": []}, "nothing is free"),
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": None}, "nothing is free"),
+        ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": {"eta": 1e4}}, "nothing is free"),
+        ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "B", "against": "hertz"}, "a dict of models"),
         ({"speed_m_s": [0.5], "tof_incident_s": [7e-4]}, {"free": "B", "method": "guess"}, "posterior"),
     ],
 )

@@ -308,7 +308,8 @@ impl Batch {
         }
         let numbers = self.numbers.iter().map(|(_, column)| &column[..]);
         let columns: Vec<&[f64]> = std::iter::once(&self.speeds_m_s[..]).chain(numbers).collect();
-        let places = Calibration::places(&columns).ok_or("so few shots are computed sooner so")?;
+        let places = Calibration::places(&columns, self.options.accuracy);
+        let places = places.ok_or("so few shots are computed sooner so")?;
         let planned = self.planned(&places).into_iter().flatten();
         let plans: Vec<Plan> = planned.map(|(plan, _)| plan).collect();
         Calibration::new(&plans, columns.len() == 1, self.options.set)

@@ -421,7 +421,7 @@ fn shot(plan: &Plan, (system, end): (&System, End), lane: LaneResult) -> Option<
     }
     let mut notes = Vec::from_iter(closed_gaps(plan, system));
     notes.extend(ambiguous(&passage, plan.accuracy));
-    Some(Shot {
+    let shot = Shot {
         finished: lane.finished,
         velocity_m_s: lane.velocity_m_s,
         work: lane.work,
@@ -429,7 +429,10 @@ fn shot(plan: &Plan, (system, end): (&System, End), lane: LaneResult) -> Option<
         conditioning: conditioning(&passages, &passage, lane.step_s),
         notes,
         ..Shot::picked(plan, &passages, Ok(passage), lane.time_s, EQUAL_STEPS)
-    })
+    };
+    // A flank of bead 1 may rise within the first steps, before what is kept of its signal.
+    let is_picked = shot.flight.is_some() && shot.compared.iter().all(Option::is_some);
+    is_picked.then_some(shot)
 }
 
 /// How well the times of flight of a pulse with these peaks are conditioned.

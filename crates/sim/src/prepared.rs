@@ -372,7 +372,7 @@ impl<'a> PreparedShot<'a> {
         for halving in 1..=MOST_HALVINGS {
             let next = self.at_step(method, step_s(halving), false);
             halvings.note(match (&last, &next) {
-                (Ok(one), Ok(two)) => one.change(two),
+                (Ok(one), Ok(two)) => accuracy::margin(self.plan) * difference(one, two),
                 _ => f64::INFINITY,
             });
             if halvings.standing() <= self.plan.accuracy {

@@ -46,6 +46,11 @@ impl Places {
         near
     }
 
+    /// A calibration shot and those of the next lower and higher speed.
+    pub(crate) fn next_to(&self, at: usize) -> std::ops::Range<usize> {
+        at.saturating_sub(1)..(at + 2).min(self.all.len())
+    }
+
     /// The calibration shot most like a shot.
     pub(crate) fn closest(&self, plan: &Plan, shot: Option<&Shot>) -> Option<usize> {
         let own = place(plan, shot, self.by_speed);

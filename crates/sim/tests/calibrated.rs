@@ -1,7 +1,9 @@
 //! Batches with calibrated error control.
 
 use hertzchain_experiment::{Experiment, preset};
-use hertzchain_sim::{Batch, BatchOptions, BatchResult, Column, ErrorControl, Shard, parse_speeds};
+use hertzchain_sim::{
+    Batch, BatchOptions, BatchResult, Column, ErrorControl, Pick, Shard, parse_speeds,
+};
 
 fn batch(experiment: &Experiment, speeds: &str, accuracy: f64, control: ErrorControl) -> Batch {
     let options = BatchOptions { accuracy, error_control: control, ..BatchOptions::of(experiment) };
@@ -43,6 +45,39 @@ fn errors_are_below_the_estimates_and_those_below_the_accuracy_asked() {
             }
         }
     }
+}
+
+/// In a narrow range of speed a contact of this row closes between the wall's peak and the return.
+#[test]
+fn narrow_ranges_of_speed_in_which_contacts_close_late_are_right() {
+    let text = r#"
+        materials.m = { young_modulus = "10.314368 GPa", poisson_ratio = 0.15663, density = "1107.65 kg/m^3" }
+        striker = { speed = "0.5 m/s" }
+        beads = [{ count = 14, radius = "1.3165421 mm", material = "m" }]
+        contacts = [{ laws = ["elastic_hertz", { law = "damping_cubic", coefficient = "1.0235 kg s/m^2" }] }]
+        far_end = { kind = "plane", material = "m" }
+        sensors = { bead = 4 }
+    "#;
+    let row = Experiment::from_text("late.toml", text).unwrap();
+    let run = |accuracy, control| {
+        batch(&row, "log:0.02:3:2000", accuracy, control).run(Shard::WHOLE, &|| {})
+    };
+    let (found, exact) = (run(1e-5, ErrorControl::default()), run(1e-8, ErrorControl::PerShot));
+    assert!(found.error_control.starts_with("calibrated"), "{}", found.error_control);
+    let reached = found.rows.column(Column::Accuracy);
+    for (error, reached) in errors(&found, &exact).into_iter().zip(reached) {
+        assert!(error <= reached + 1e-8, "{error:e}, stated {reached:e}");
+    }
+}
+
+/// The tenth of bead 1's peak is passed within the first steps.
+#[test]
+fn flanks_of_the_first_bead_are_timed_in_batches_too() {
+    let row = preset("hertz").unwrap().set(&[("sensors.bead", 1.0)]).unwrap();
+    let options = BatchOptions { accuracy: 1e-3, pick: Pick::Flank10, ..BatchOptions::of(&row) };
+    let found = Batch::new(&row, vec![0.25, 0.5], options).unwrap().run(Shard::WHOLE, &|| {});
+    let times = found.rows.column(Column::Incident);
+    assert!(times.iter().all(|time_s| time_s.is_finite()), "{times:?}");
 }
 
 #[test]

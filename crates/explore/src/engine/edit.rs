@@ -27,6 +27,9 @@ pub struct Edit {
 /// Longest text of an experiment, in bytes.
 const LONGEST_TEXT: usize = 256 * 1024;
 
+/// Most keys of a path: no value of an experiment is half as deep, and nested tables take their reader's stack.
+const DEEPEST: usize = 32;
+
 /// Returns a text after changes.
 pub(super) fn edited(text: &str, edits: &[Edit]) -> Result<String, Refusal> {
     check_length(text)?;
@@ -38,6 +41,12 @@ pub(super) fn edited(text: &str, edits: &[Edit]) -> Result<String, Refusal> {
         let [before @ .., last] = edit.path.as_slice() else {
             return Err(Refusal::words("an edit needs a path"));
         };
+        if before.len() >= DEEPEST {
+            let asked = edit.path.len();
+            return Err(Refusal::Error(format!(
+                "a path of {asked} keys: expected at most {DEEPEST}"
+            )));
+        }
         let mut item = document.as_item_mut();
         for (at, step) in before.iter().enumerate() {
             item = inner(item, step, edit.path.get(at + 1))

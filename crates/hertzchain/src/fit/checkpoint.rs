@@ -27,18 +27,26 @@ pub(super) fn check_options(arguments: &Arguments) -> Result<(), Failure> {
     };
     let path = out.join(OPTIONS);
     let now = options::recorded(arguments);
-    if arguments.resume && path.exists() {
+    let chain = out.join(CHAIN);
+    if !arguments.resume && chain.exists() {
+        // Walkers of an earlier run do not belong to these options.
+        fs::remove_file(&chain)
+            .map_err(|error| Failure::Ours(format!("{}: {error}", chain.display())))?;
+    }
+    if arguments.resume && (path.exists() || chain.exists()) {
         let unread = |error: &dyn std::fmt::Display| {
             Failure::User(format!("--resume: {}: {error}", path.display()))
         };
         let text = fs::read_to_string(&path).map_err(|error| unread(&error))?;
         let before: Map<String, Value> =
             serde_json::from_str(&text).map_err(|error| unread(&error))?;
-        let differ = before
-            .iter()
-            .filter(|(name, value)| *name != MAY_DIFFER && now[name.as_str()] != **value);
+        let missing =
+            now.as_object().into_iter().flatten().filter(|(name, _)| !before.contains_key(*name));
+        let names = before.keys().chain(missing.map(|(name, _)| name));
+        let was = |name: &str| before.get(name).unwrap_or(&Value::Null);
+        let differ = names.filter(|name| *name != MAY_DIFFER && now[name.as_str()] != *was(name));
         let differ: Vec<String> = differ
-            .map(|(name, value)| format!("{name} was {value}, now {}", now[name.as_str()]))
+            .map(|name| format!("{name} was {}, now {}", was(name), now[name.as_str()]))
             .collect();
         if !differ.is_empty() {
             return Err(Failure::User(format!(

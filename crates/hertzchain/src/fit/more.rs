@@ -83,6 +83,7 @@ pub(super) fn more(
         Err(error) => error.to_string(),
     };
     check_cancelled()?;
+    note_progress(&format_args!("posterior: every curve is computed: {why}"));
     let curves = Curves::Computed(Some(why));
     more_of(problem, problem, found, curves, arguments)
 }

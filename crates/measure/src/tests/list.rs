@@ -84,6 +84,13 @@ fn a_list_has_times_that_were_picked_by_hand() {
     assert_eq!(entry("a.csv").picks_s, [None, Some(1.2e-3), None]);
     assert_eq!(entry("a.csv").pick_error_s, Some(2e-7));
     assert_eq!(entry("b.csv").picks_s, [None; 3]);
+    for (text, what) in [("a.csv,,1e-6", "no pick"), ("a.csv,1e-3,0", "above 0")] {
+        let wrong = ShotList::parse(&format!("file,wall pick,pick error\n{text}\n"));
+        assert!(
+            matches!(wrong, Err(MeasureError::List(ref why)) if why.contains(what)),
+            "{wrong:?}"
+        );
+    }
     let other = ShotList::parse("file,wall pick (us)\na.csv,1200\n");
     assert!(matches!(other, Err(MeasureError::List(ref why)) if why.contains("picks in s")));
 }

@@ -167,8 +167,7 @@ def _cut(folder: Path, name: str) -> int | None:
 
 def _shard(path: str, name: str, number: int, of: int, threads: int) -> Outcome:
     """Computes a shard of a sweep on a worker."""
-    folder = str(Path(path).parent)
-    return _outcome_of(number, lambda: _opened(path, name).shard(number, of, folder, threads))
+    return _outcome_of(number, lambda: _opened(path, name).shard(number, of, str(Path(path).parent), threads))
 
 
 def _series(experiment: Experiment, out: str, number: int, of: int, seed: int | None, threads: int) -> Outcome:

@@ -215,7 +215,7 @@ def gauge(
 
 def _named(free: str | Iterable[str]) -> list[str]:
     """Names of free numbers, at least one."""
-    names = free.split(",") if isinstance(free, str) else list(free or ())
+    names = free.split(",") if isinstance(free, str) else list(free) if isinstance(free, Iterable) and not isinstance(free, Mapping) else []
     if not names:
         raise OptionError('nothing is free: free names numbers, such as "eta,B"')
     return names
@@ -223,9 +223,10 @@ def _named(free: str | Iterable[str]) -> list[str]:
 
 def fit_options(how: Mapping[str, Any], free: str | Iterable[str]) -> dict[str, Any]:
     """Options of a fit, with what is free; models to compare with as the command line has them."""
-    against = how.get("against") or {}
-    named = {model: [names] if isinstance(names, str) else names for model, names in against.items()}
-    return {**how, "free": _named(free), "against": [f"{model}={','.join(names)}" for model, names in named.items()]}
+    against = {} if how.get("against") is None else how["against"]
+    if not isinstance(against, Mapping):
+        raise OptionError('against is a dict of models and what is free in them, such as {"hertz": "Y"}')
+    return {**how, "free": _named(free), "against": [f"{model}={','.join(_named(names))}" for model, names in against.items()]}
 
 
 def table(data: Any, name: str = "data") -> tuple[str, str]:

@@ -60,8 +60,7 @@ class Result:
 
     def _variables(self) -> Mapping[str, Variable]:
         """What xarray gets; the table over its index."""
-        of = self._index or self._dimension
-        return {name: ((of,), _array(values)) for name, values in self._columns().items()}
+        return {name: ((self._index or self._dimension,), _array(values)) for name, values in self._columns().items()}
 
     def _coordinates(self) -> tuple[str, ...]:
         """Coordinates beside those that xarray knows as such: variables with the name of a dimension."""
@@ -967,8 +966,7 @@ class _Rows(Result):
 
     def _columns(self) -> dict[str, list[Any]]:
         rows = [(group.title, row) for group in getattr(self, "groups", (self,)) for row in group.rows]
-        columns = {of: [getattr(row, of) for _, row in rows] for of in ("name", "value", "unit")}
-        return {"group": [title for title, _ in rows], **columns}
+        return {"group": [title for title, _ in rows], **{of: [getattr(row, of) for _, row in rows] for of in ("name", "value", "unit")}}
 
     def _units(self) -> dict[str, str]:
         return {"value": "as in the column unit"}

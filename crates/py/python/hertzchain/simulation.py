@@ -127,12 +127,14 @@ def shot(
     """
     experiment = opened(experiment)
     asked = options.text("shot", how, speed=speed)
-    laws = [law._native() for law in ([forces] if isinstance(forces, ForceLaw) else forces)]
+    laws = [forces] if isinstance(forces, ForceLaw) else list(forces or ())
+    if not all(isinstance(law, ForceLaw) for law in laws):
+        raise OptionError("forces takes ForceLaw, one or several")
     sensors, interval = _sensors(trace), None if interval_s is None else float(interval_s)
     if sensors is None and interval is not None:
         raise OptionError("interval_s is for the samples of a trace: give trace, or leave it out")
     with options.progress(progress, None, "step") as update:
-        found = _native.shot(experiment, asked, None if sensors is None else (sensors, interval), laws, update)
+        found = _native.shot(experiment, asked, None if sensors is None else (sensors, interval), [law._native() for law in laws], update)
     warnings = findings(found.pop("warnings"))
     for warning in warnings:
         _warnings.warn(warning.report, ExperimentWarning, stacklevel=2)
@@ -146,7 +148,7 @@ def shot(
 
 def _sensors(trace: bool | Iterable[Sensor]) -> list[tuple[str, int]] | None:
     """Sensors by kind and number; an empty list for the experiment's own."""
-    if isinstance(trace, bool):
+    if isinstance(trace, bool) or trace is None:
         return [] if trace else None
     if found := [_sensor(sensor) for sensor in ([trace] if isinstance(trace, str) else trace)]:
         return found

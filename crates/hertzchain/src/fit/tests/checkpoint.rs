@@ -21,8 +21,18 @@ fn a_run_goes_on_with_its_own_options_alone() {
     let expected = ["seed was 3, now 4", "robust was false, now true"];
     assert!(expected.iter().all(|word| why.contains(word)), "{why}");
     assert!(!why.contains("steps"), "{why}");
-    // Anew, anything goes.
+    // Anew, anything goes, and the walkers of the run before do not.
+    fs::write(out.join(CHAIN), b"walkers").unwrap();
     check_options(&arguments(&out, &["--seed=4"])).unwrap();
+    assert!(!out.join(CHAIN).exists());
+    // Walkers whose options are not known, or not all of them, belong to none.
+    fs::write(out.join(CHAIN), b"walkers").unwrap();
+    fs::write(out.join(OPTIONS), b"{}").unwrap();
+    check_options(&arguments(&out, &["--seed=4", "--resume"])).unwrap_err();
+    fs::remove_file(out.join(OPTIONS)).unwrap();
+    check_options(&arguments(&out, &["--seed=4", "--resume"])).unwrap_err();
+    fs::remove_file(out.join(CHAIN)).unwrap();
+    check_options(&arguments(&out, &["--seed=4", "--resume"])).unwrap();
     finished(&out);
     assert!(!out.join(OPTIONS).exists());
     let _ = fs::remove_dir_all(out);
