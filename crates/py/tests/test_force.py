@@ -89,6 +89,7 @@ def test_a_law_that_makes_no_sense_is_refused():
 
 
 def test_what_is_no_force_law_is_refused_in_words() -> None:
-    with pytest.raises(hc.OptionError, match="forces takes ForceLaw"):
-        hc.shot(row("elastic_hertz"), forces="abc")
+    for law in ("abc", 3.0, np.ones(2), hertz):
+        with pytest.raises(hc.OptionError, match="forces takes ForceLaw"):
+            hc.shot(row("elastic_hertz"), forces=law)
     assert hc.shot(row("elastic_hertz"), forces=None, trace=None).trace is None

@@ -20,7 +20,8 @@ use std::sync::Arc;
 
 /// Least and most calibration shots of a batch: most where other numbers than the speed differ, and of large batches
 /// at 1e-5 and looser, as what contacts do behind a pulse may be different in narrow ranges of speed. Of 2,000 shots of
-/// a row whose losses begin with a quarter of its forces 18 were up to 1.5 times as wrong as stated with 48, none with 96.
+/// a row whose losses begin with a quarter of its forces 18 were up to 1.5 times as wrong as stated with 48, and none
+/// with 96 and two settings next to those in doubt.
 const CALIBRATION_SHOTS: [usize; 2] = [48, 96];
 const CALIBRATION_SHARE: usize = 8;
 
@@ -58,8 +59,8 @@ const MAPS_MARGIN: f64 = 1.25;
 /// of damping were wrong by up to 2.3 times what was asked. Two settings must then agree.
 const LEAST_OF_SCATTERED: f64 = 1e-6;
 
-/// From this accuracy on two settings must agree on shots next to calibration shots that say nothing of theirs: as
-/// they do not converge, or have a kink. Below it that would leave 1 of 10 dry shots to the adaptive loop.
+/// From this accuracy on two settings must agree on shots next to calibration shots that say nothing of theirs: those
+/// with a kink or with other peaks. Below it that would leave 1 of 10 dry shots to the adaptive loop.
 const LEAST_IN_DOUBT: f64 = 1e-5;
 
 /// So many times their difference is at most what was asked.

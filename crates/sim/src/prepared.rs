@@ -371,12 +371,16 @@ impl<'a> PreparedShot<'a> {
         let mut halvings = Halvings::default();
         for halving in 1..=MOST_HALVINGS {
             let next = self.at_step(method, step_s(halving), false);
-            halvings.note(match (&last, &next) {
-                (Ok(one), Ok(two)) => accuracy::margin(self.plan) * difference(one, two),
+            let change = match (&last, &next) {
+                (Ok(one), Ok(two)) => one.change(two),
                 _ => f64::INFINITY,
-            });
-            if halvings.standing() <= self.plan.accuracy {
-                return self.converged(method, step_s(halving), halvings.standing(), next);
+            };
+            halvings.note(change);
+            let standing = accuracy::margin(self.plan) * halvings.standing();
+            if standing <= self.plan.accuracy {
+                let heights = last.iter().zip(&next).map(|(one, two)| two.height_change(one));
+                let heights = heights.fold(0.0, f64::max);
+                return self.converged(method, step_s(halving), (standing, heights), next);
             }
             let forecast = halvings.forecast(self.plan.accuracy);
             if let (Some(forecast), Ok(shot)) = (forecast, &next)
@@ -429,14 +433,15 @@ impl<'a> PreparedShot<'a> {
         &self,
         method: SolverMethod,
         step_s: f64,
-        change: f64,
+        (change, heights): (f64, f64),
         found: Result<Shot, StudyError>,
     ) -> Result<Shot, StudyError> {
         let mut shot = match self.plan.watch {
             Some(_) => self.at_step(method, step_s, true)?,
             None => found?,
         };
-        shot.accuracy_reached = Some(change);
+        let reached = error_bound(&shot, change, heights);
+        self.note_reached(&mut shot, reached);
         Ok(shot)
     }
 

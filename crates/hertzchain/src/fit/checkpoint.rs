@@ -18,7 +18,7 @@ const OPTIONS: &str = "options.json";
 /// The option that may differ where a run is resumed: how far it goes.
 const MAY_DIFFER: &str = "steps";
 
-/// Writes the options of a new run; for a resumed one checks that they are the same.
+/// Checks that the options of a resumed run are those of the run that it continues.
 pub(super) fn check_options(arguments: &Arguments) -> Result<(), Failure> {
     let Some(out) =
         arguments.out.as_deref().filter(|_| arguments.method == options::Method::Posterior)
@@ -26,37 +26,46 @@ pub(super) fn check_options(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     };
     let path = out.join(OPTIONS);
-    let now = options::recorded(arguments);
     let chain = out.join(CHAIN);
-    if !arguments.resume && chain.exists() {
-        // Walkers of an earlier run do not belong to these options.
-        fs::remove_file(&chain)
-            .map_err(|error| Failure::Ours(format!("{}: {error}", chain.display())))?;
+    let path = out.join(OPTIONS);
+    if !arguments.resume || !(path.exists() || chain.exists()) {
+        return Ok(());
     }
-    if arguments.resume && (path.exists() || chain.exists()) {
-        let unread = |error: &dyn std::fmt::Display| {
-            Failure::User(format!("--resume: {}: {error}", path.display()))
-        };
-        let text = fs::read_to_string(&path).map_err(|error| unread(&error))?;
-        let before: Map<String, Value> =
-            serde_json::from_str(&text).map_err(|error| unread(&error))?;
-        let missing =
-            now.as_object().into_iter().flatten().filter(|(name, _)| !before.contains_key(*name));
-        let names = before.keys().chain(missing.map(|(name, _)| name));
-        let was = |name: &str| before.get(name).unwrap_or(&Value::Null);
-        let differ = names.filter(|name| *name != MAY_DIFFER && now[name.as_str()] != *was(name));
-        let differ: Vec<String> = differ
-            .map(|name| format!("{name} was {}, now {}", was(name), now[name.as_str()]))
-            .collect();
-        if !differ.is_empty() {
-            return Err(Failure::User(format!(
-                "--resume continues the run in {}, which had other options: {}",
-                out.display(),
-                differ.join("; ")
-            )));
+    let now = options::recorded(arguments);
+    let unread = |error: &dyn std::fmt::Display| {
+        let way_out = format!("remove {} to begin anew", chain.display());
+        Failure::User(format!("--resume: {}: {error}; {way_out}", path.display()))
+    };
+    let text = fs::read_to_string(&path).map_err(|error| unread(&error))?;
+    let before: Map<String, Value> = serde_json::from_str(&text).map_err(|error| unread(&error))?;
+    let missing =
+        now.as_object().into_iter().flatten().filter(|(name, _)| !before.contains_key(*name));
+    let names = before.keys().chain(missing.map(|(name, _)| name));
+    let was = |name: &str| before.get(name).unwrap_or(&Value::Null);
+    let differ = names.filter(|name| *name != MAY_DIFFER && now[name.as_str()] != *was(name));
+    let differ: Vec<String> = differ
+        .map(|name| format!("{name} was {}, now {}", was(name), now[name.as_str()]))
+        .collect();
+    match differ.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::User(format!(
+            "--resume continues the run in {}, which had other options: {}",
+            out.display(),
+            differ.join("; ")
+        ))),
+    }
+}
+
+/// Writes the options of a run whose walkers begin, in the place of those of an earlier one.
+fn begin(out: &Path, arguments: &Arguments) -> Result<(), Failure> {
+    let chain = out.join(CHAIN);
+    match fs::remove_file(&chain) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            return Err(Failure::Ours(format!("{}: {error}", chain.display())));
         }
+        _ => {}
     }
-    write(out, OPTIONS, now.to_string().as_bytes())
+    write(out, OPTIONS, options::recorded(arguments).to_string().as_bytes())
 }
 
 /// Removes the options where no walkers are left to continue.
@@ -96,6 +105,7 @@ pub(super) fn started(
 ) -> Result<Chain, Failure> {
     let path = arguments.out.as_deref().map(|out| out.join(CHAIN));
     let Some(path) = path.filter(|path| arguments.resume && path.exists()) else {
+        arguments.out.as_deref().map_or(Ok(()), |out| begin(out, arguments))?;
         let walkers = WALKERS.max(4 * fit.point.len());
         let how = Sampling { walkers, seed: arguments.seed, ..Sampling::default() };
         return Chain::start(problem, fit, covariance, &how).map_err(user);

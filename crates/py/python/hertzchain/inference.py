@@ -223,7 +223,7 @@ def _named(free: str | Iterable[str]) -> list[str]:
 
 def fit_options(how: Mapping[str, Any], free: str | Iterable[str]) -> dict[str, Any]:
     """Options of a fit, with what is free; models to compare with as the command line has them."""
-    against = {} if how.get("against") is None else how["against"]
+    against = {} if how.get("against") in (None, [], ()) else how["against"]
     if not isinstance(against, Mapping):
         raise OptionError('against is a dict of models and what is free in them, such as {"hertz": "Y"}')
     return {**how, "free": _named(free), "against": [f"{model}={','.join(_named(names))}" for model, names in against.items()]}

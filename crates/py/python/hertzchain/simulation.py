@@ -127,7 +127,7 @@ def shot(
     """
     experiment = opened(experiment)
     asked = options.text("shot", how, speed=speed)
-    laws = [forces] if isinstance(forces, ForceLaw) else list(forces or ())
+    laws = [] if forces is None else list(forces) if isinstance(forces, Iterable) else [forces]
     if not all(isinstance(law, ForceLaw) for law in laws):
         raise OptionError("forces takes ForceLaw, one or several")
     sensors, interval = _sensors(trace), None if interval_s is None else float(interval_s)

@@ -12,7 +12,7 @@ fn arguments(out: &Path, more: &[&str]) -> Arguments {
 #[test]
 fn a_run_goes_on_with_its_own_options_alone() {
     let out = std::env::temp_dir().join(format!("hertzchain-options-{}", std::process::id()));
-    check_options(&arguments(&out, &["--seed=3", "--steps=100"])).unwrap();
+    begin(&out, &arguments(&out, &["--seed=3", "--steps=100"])).unwrap();
     check_options(&arguments(&out, &["--seed=3", "--steps=900", "--resume"])).unwrap();
     let other = arguments(&out, &["--seed=4", "--robust", "--steps=100", "--resume"]);
     let Err(Failure::User(why)) = check_options(&other) else {
@@ -23,7 +23,10 @@ fn a_run_goes_on_with_its_own_options_alone() {
     assert!(!why.contains("steps"), "{why}");
     // Anew, anything goes, and the walkers of the run before do not.
     fs::write(out.join(CHAIN), b"walkers").unwrap();
-    check_options(&arguments(&out, &["--seed=4"])).unwrap();
+    let anew = arguments(&out, &["--seed=4"]);
+    check_options(&anew).unwrap();
+    assert!(out.join(CHAIN).exists(), "nothing is lost before the new run has its own");
+    begin(&out, &anew).unwrap();
     assert!(!out.join(CHAIN).exists());
     // Walkers whose options are not known, or not all of them, belong to none.
     fs::write(out.join(CHAIN), b"walkers").unwrap();
