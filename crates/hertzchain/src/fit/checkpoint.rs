@@ -25,7 +25,6 @@ pub(super) fn check_options(arguments: &Arguments) -> Result<(), Failure> {
     else {
         return Ok(());
     };
-    let path = out.join(OPTIONS);
     let chain = out.join(CHAIN);
     let path = out.join(OPTIONS);
     if !arguments.resume || !(path.exists() || chain.exists()) {
