@@ -19,10 +19,12 @@ use std::fmt::{Display, Formatter, Result as Formatted};
 use std::sync::Arc;
 
 /// Least and most calibration shots of a batch: most where other numbers than the speed differ, and of large batches
-/// at 1e-5 and looser, as what contacts do behind a pulse may be different in narrow ranges of speed. Of 2,000 shots of
-/// a row whose losses begin with a quarter of its forces 18 were up to 1.5 times as wrong as stated with 48, and none
-/// with 96 and two settings next to those in doubt.
+/// at 1e-5 and looser, as errors may be larger in narrow ranges of speed. Of 2,000 shots of a row whose losses begin
+/// with a quarter of its forces 18 were up to 1.5 times as wrong as stated with 48, and none with 96 and two settings
+/// next to those in doubt.
 const CALIBRATION_SHOTS: [usize; 2] = [48, 96];
+
+/// Shots of a large batch for each calibration shot, between those.
 const CALIBRATION_SHARE: usize = 8;
 
 /// Batches of fewer shots are computed sooner with control per shot.

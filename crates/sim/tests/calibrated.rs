@@ -47,9 +47,9 @@ fn errors_are_below_the_estimates_and_those_below_the_accuracy_asked() {
     }
 }
 
-/// In a narrow range of speed a contact of this row closes between the wall's peak and the return.
+/// Between 0.53 and 0.60 m/s errors of this row's reflected times hang on where steps lie.
 #[test]
-fn narrow_ranges_of_speed_in_which_contacts_close_late_are_right() {
+fn narrow_ranges_of_speed_with_larger_errors_are_right() {
     let text = r#"
         materials.m = { young_modulus = "10.314368 GPa", poisson_ratio = 0.15663, density = "1107.65 kg/m^3" }
         striker = { speed = "0.5 m/s" }
@@ -58,7 +58,7 @@ fn narrow_ranges_of_speed_in_which_contacts_close_late_are_right() {
         far_end = { kind = "plane", material = "m" }
         sensors = { bead = 4 }
     "#;
-    let row = Experiment::from_text("late.toml", text).unwrap();
+    let row = Experiment::from_text("narrow.toml", text).unwrap();
     let run = |accuracy, control| {
         batch(&row, "log:0.02:3:2000", accuracy, control).run(Shard::WHOLE, &|| {})
     };
