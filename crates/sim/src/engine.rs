@@ -255,8 +255,15 @@ fn compared(plans: &[&Plan], set: InstructionSet) -> Vec<Option<Shot>> {
     let Some(own) = plans.first().and_then(|plan| Setting::of(plan)) else {
         return vec![None; plans.len()];
     };
-    let systems = systems(plans);
-    let run = |setting: Setting| run_lanes(plans, &systems, set, &setting).into_iter();
+    let mut systems = systems(plans);
+    let mut run = |setting: Setting| {
+        let shots = run_lanes(plans, &systems, set, &setting);
+        // What one setting can't run is not compared.
+        for (system, shot) in systems.iter_mut().zip(&shots) {
+            *system = system.take().filter(|_| shot.is_some());
+        }
+        shots.into_iter()
+    };
     let shots = plans.iter().zip(run(own));
     let [near, far] = LONGER_STEPS.map(|(longer, _)| run(own.longer(longer)));
     shots
@@ -379,10 +386,6 @@ pub(crate) fn run_lanes(
     systems.iter().map(one).collect()
 }
 
-/// A single step may correct a velocity by this fraction of the shot's speed:
-/// more, and something happens that equal steps do not resolve.
-const MOST_CORRECTION: f64 = 0.01;
-
 /// Errors of heights of equal steps over the accuracy asked: 19 of 20 random rows have less.
 const OF_HEIGHTS: f64 = 10.0;
 
@@ -399,9 +402,6 @@ fn may_hide(plan: &Plan, passage: &Passage, (time_s, at_wall_n): (f64, f64)) -> 
 
 /// What a plan asks for, from what its sensors showed.
 fn shot(plan: &Plan, (system, end): (&System, End), lane: LaneResult) -> Option<Shot> {
-    if lane.correction > MOST_CORRECTION {
-        return None;
-    }
     let Ok([sensor, wall]) = <[_; 2]>::try_from(lane.signals) else {
         return None;
     };

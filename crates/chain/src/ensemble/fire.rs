@@ -87,9 +87,6 @@ pub struct LaneResult {
     pub velocity_m_s: Vec<f64>,
     /// Step in s.
     pub step_s: f64,
-    /// Largest correction of a velocity by a single step, as a fraction of
-    /// the speed that set the chain in motion, at the steps looked at.
-    pub correction: f64,
     /// What the first sensor showed at the largest sample of the second one, the wall.
     pub at_wall_n: f64,
     /// What it cost.
@@ -105,6 +102,10 @@ const LOOK_EVERY: usize = 16;
 
 /// Steps between looks at how good the steps are.
 const CORRECTION_EVERY: usize = 64;
+
+/// A single step may correct a velocity by this fraction of the speed that set the chain in motion:
+/// more, and something happens that equal steps do not resolve, or the motion is unstable.
+const MOST_CORRECTION: f64 = 0.01;
 
 /// Most steps of a shot: what sixteen lanes' sensors show in so many takes 67 MB. Pulses are
 /// through chains of a thousand beads in half of them; what takes longer flies through gaps, which
@@ -201,7 +202,6 @@ fn check(shot: &Shot<'_>, settings: &Settings) -> Result<(), SolveError> {
 struct Lane {
     passing: Passing,
     last_step: usize,
-    correction: f64,
     velocity_m_s: Vec<f64>,
     state: LaneState,
 }
@@ -303,9 +303,8 @@ fn fly<N: Number<W>, const W: usize>(
         ));
         if block.steps.is_multiple_of(CORRECTION_EVERY) {
             let corrections = block.corrections();
-            let flying = lanes.iter_mut().zip(corrections).zip(systems);
-            for ((lane, correction), system) in flying {
-                lane.correct(block.steps, correction / system.scales().speed_m_s);
+            for ((lane, correction), system) in lanes.iter_mut().zip(corrections).zip(systems) {
+                lane.check(block.steps, correction / system.scales().speed_m_s);
             }
         }
         for (at, lane) in lanes.iter_mut().enumerate() {
@@ -326,18 +325,16 @@ impl Lane {
         Self {
             passing: Passing::new(least),
             last_step,
-            correction: 0.0,
             velocity_m_s: Vec::with_capacity(bodies),
             state: LaneState::Flying,
         }
     }
 
-    fn correct(&mut self, step: usize, correction: f64) {
-        if self.state == LaneState::Flying {
-            self.correction = self.correction.max(correction);
-            if !correction.is_finite() {
-                self.state = LaneState::Failed { step };
-            }
+    /// Gives up where a step corrects too much, or by what is no number.
+    fn check(&mut self, step: usize, correction: f64) {
+        let is_small = correction <= MOST_CORRECTION;
+        if self.state == LaneState::Flying && !is_small {
+            self.state = LaneState::Failed { step };
         }
     }
 
@@ -419,7 +416,6 @@ impl Lane {
             finished,
             velocity_m_s: self.velocity_m_s,
             step_s: clock.step_s,
-            correction: self.correction,
             at_wall_n,
             work: Work {
                 force_passes: step as u64 + 1,
@@ -434,8 +430,10 @@ impl Lane {
 
 fn diverged(clock: Clock<'_>, step: usize) -> SolveError {
     SolveError::Diverged(format!(
-        "the motion is not finite after t = {:e} s: the step of {:e} s is too long for this chain",
+        "the step of {:e} s is too long for this chain: at t = {:e} s it corrects a velocity by more than {:.0} % of \
+         the shot's speed",
+        clock.step_s,
         clock.time_s(step),
-        clock.step_s
+        100.0 * MOST_CORRECTION
     ))
 }

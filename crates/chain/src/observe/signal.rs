@@ -422,7 +422,25 @@ fn interior_maxima(
         }
         last = i;
     }
+    if piece.has_given_length() {
+        add_jumps(piece, sensor, values, &mut found);
+    }
     found
+}
+
+/// Adds maxima at jumps within a step of a given length, at which rates do not change sign: samples
+/// that are higher than both their neighbours.
+fn add_jumps(piece: &Piece<'_>, sensor: Sensor, values: [f64; 5], maxima: &mut Vec<Maximum>) {
+    let floor = JUMP * values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    for i in 1..4 {
+        let (low, high) = (0.25 * (i - 1) as f64, 0.25 * (i + 1) as f64);
+        let between = piece.time_s(low)..=piece.time_s(high);
+        let seen = maxima.iter().any(|it| between.contains(&it.time_s));
+        if !seen && values[i] > values[i - 1].max(values[i + 1]) + floor {
+            maxima.push(highest_between(piece, sensor, low, high));
+        }
+    }
+    maxima.sort_by(|one, two| one.time_s.total_cmp(&two.time_s));
 }
 
 /// The maximum in a bracket. Slopes of samples may be wrong near the ends of the

@@ -100,7 +100,6 @@ fn numbers(flown: &LaneResult) -> Vec<(&'static str, f64)> {
     ];
     numbers.extend(flown.velocity_m_s.iter().copied().map(named("velocity")));
     numbers.extend(maxima.flat_map(|m| [m.time_s, m.value]).map(named("maximum")));
-    numbers.push(("correction", flown.correction));
     numbers.extend(
         stretches.flat_map(|s| [s.start_s].into_iter().chain(s.values)).map(named("stretch")),
     );

@@ -5,7 +5,7 @@ use super::branches::{Chosen, ENOUGH, Row, smoothest};
 use crate::curve::{CurveProblem, MeasuredCurve, Supply};
 use crate::data::Data;
 use crate::goodness::LEAST_BY_CHANCE;
-use crate::least_squares::{DOUBTFUL, Descent, Merit, run};
+use crate::least_squares::{DOUBTFUL, Descent, DescentLimits, Merit, run};
 use crate::linear::{cholesky, dot, forward, least_squares};
 use crate::{Covariance, DataRow, Fit, Fitting, InferError, Loss, Parameter, Problem, fit};
 use hertzchain_measure::signal::ChiSquare;
@@ -296,7 +296,7 @@ impl Gauge {
             self.row_problem(row, (Free::Both, [stiffness, relaxation]), &self.dry_fit.point);
         let merit = Merit::new(&problem, Loss::Squares);
         let low = self.scanned_s()[0];
-        let limits = Fitting { tolerance: ROUGH, iterations: 10, ..Fitting::default() }.limits();
+        let limits = DescentLimits { tolerance: ROUGH, share: ROUGH_SHARE, iterations: 10 };
         let descent = |step: usize| {
             let point = vec![stiffness, low * (step as f64 * STEP).exp()];
             Descent::new(merit.clone(), point, vec![0], limits)
@@ -400,6 +400,8 @@ const STEPS: usize = 60;
 const STEP: f64 = 0.0809;
 /// Expected fall of chi-square/2 at which K is good enough for a start.
 const ROUGH: f64 = 0.5;
+/// The same over chi-square/2: where the numbers are far from met at any K, there is no solution.
+const ROUGH_SHARE: f64 = 0.01;
 /// Half the step in ln K and ln A of the derivatives of a combination.
 const LN_STEP: f64 = 0.01;
 /// Chi-square above the best solution's from which another is rejected: three standard errors.

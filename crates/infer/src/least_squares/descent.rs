@@ -36,11 +36,12 @@ pub(crate) struct Descent<'a> {
     pub around: Option<Around>,
 }
 
-/// When a descent ends: expected fall of the cost at which the minimum counts as reached, and most
-/// iterations.
+/// When a descent ends: expected fall of the cost at which the minimum counts as reached, as it is or
+/// as a share of the cost, and most iterations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DescentLimits {
     pub tolerance: f64,
+    pub share: f64,
     pub iterations: usize,
 }
 
@@ -262,7 +263,7 @@ impl<'a> Descent<'a> {
         }
         let trials = self.trials(linear);
         let expected_fall = trials.expected_fall;
-        if expected_fall < self.limits.tolerance {
+        if expected_fall < self.limits.tolerance.max(self.limits.share * self.cost()) {
             return Ok(Stage::Done(Ending::Minimum));
         }
         if self.iterations >= self.limits.iterations {

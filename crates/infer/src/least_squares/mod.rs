@@ -4,7 +4,7 @@ mod descent;
 mod merit;
 
 pub use descent::Ending;
-pub(crate) use descent::{Descent, run};
+pub(crate) use descent::{Descent, DescentLimits, run};
 pub(crate) use merit::{EXTRAPOLATED, JUMPING, Merit, ROUNDING, jacobian_at};
 pub use merit::{Jacobian, Loss};
 
@@ -12,7 +12,7 @@ use crate::identify::{directions, is_weak, sized};
 use crate::linear::{dot, norm, svd};
 use crate::random::{Purpose, RandomStream};
 use crate::{InferError, ModelError, Parameter, Prior, Problem, Residuals};
-use descent::{DescentLimits, NOTICED, SMALL_FALL};
+use descent::{NOTICED, SMALL_FALL};
 use merit::{Linear, jacobian};
 
 /// Options of [`fit`].
@@ -56,7 +56,7 @@ impl Fitting {
     }
 
     pub(crate) fn limits(&self) -> DescentLimits {
-        DescentLimits { tolerance: self.tolerance, iterations: self.iterations }
+        DescentLimits { tolerance: self.tolerance, share: 0.0, iterations: self.iterations }
     }
 }
 
