@@ -36,9 +36,6 @@ const EXACT: f64 = 1e-11;
 /// Longest duration of a shot in s; the slowest ones take half of it.
 const LONGEST_S: f64 = 2e-2;
 
-/// Sweeps do not trust a shot in which one step corrects more than this.
-const MOST_CORRECTION: f64 = 0.01;
-
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 fn main() -> Result<()> {
@@ -253,8 +250,7 @@ fn flown(
         openings,
     };
     let flown = ensemble::fire(&shots, &settings).into_iter();
-    let trusted = |flown: &LaneResult| flown.correction <= MOST_CORRECTION;
-    Ok(flown.map(|flown| flown.ok().filter(trusted)).collect())
+    Ok(flown.map(std::result::Result::ok).collect())
 }
 
 fn flight(flown: LaneResult) -> Option<Flight> {
