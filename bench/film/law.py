@@ -7,10 +7,10 @@ punch's shape, so that with V(a) = ∫ H ds
 
 and the rim y, an overlap that the oil at the edge still has to give way to, relaxes as an inlet of speed ȧ would:
 
-    ẏ = δ̇ − (2E*/η) (κ a y / (c R^1.4 (R y/a²)^g))^{5/3} − y ȧ/(2a) where y > 0; oil that is drawn cavitates: y = 0.
+    ẏ = δ̇ − (2E*/η) (κ a y / (c R^1.4 (R y/a²)^g (R/a)^e))^{5/3} − y ȧ/(2a) where y > 0; oil that is drawn cavitates: y = 0.
 
-At a steady rate κ y = c (η δ̇/(2E*))^0.6 R^1.4/a (R y/a²)^g: with g = 0, c times the inlet film (η ȧ/E*)^0.6 R^0.8 a^−0.4; a rim that is narrow beside
-the contact resists less. The last term keeps the energy E* κ a y² of the rim from growing with a alone.
+At a steady rate κ y = c (η δ̇/(2E*))^0.6 R^1.4/a (R y/a²)^g (R/a)^e: with g = e = 0, c times the inlet film (η ȧ/E*)^0.6 R^0.8 a^−0.4; a rim that is
+narrow beside the contact, or around a wide one, resists less. The last term keeps the energy E* κ a y² of the rim from growing with a alone.
 An oil that thickens with pressure, η exp(α p), leaves more film and squeezes out less: with G(x) = x/(1 − e^−x), x = α k E* (β a y/R²)^{1/3} (the
 pressure of an inlet of such a film), β becomes β G^n and η becomes η G^m (1 + l α E* a/R), the last by the pressure in the contact.
 Energy: F δ̇ = d/dt {E* ∫ (δ − s²/R + H)² ds + E* κ a y²} + 2 E* κ a y (2E*/η) (...)^{5/3}, whose last part is never negative.
@@ -19,8 +19,8 @@ Energy: F δ̇ = d/dt {E* ∫ (δ − s²/R + H)² ds + E* κ a y²} + 2 E* κ a
 import numpy as np
 from numba import njit
 
-# c, β, κ, g; k, m, n, l. Pure numbers, the same for every contact, fitted to contact.py alone by fit.py.
-CONSTANTS = (3.887, 0.4416, 0.6543, 0.04487, 2.266, -0.1592, 0.5735, 0.005603)
+# c, β, κ, g; k, m, n, l; e. Pure numbers, the same for every contact, fitted to contact.py alone by fit.py.
+CONSTANTS = (3.125, 0.4871, 0.6664, 0.0389, 2.47, -0.2138, 0.5311, 0.01202, 0.05852)
 # Where the numbers of one contact's state are.
 RADIUS_A, RIM, OVERLAP, DISSIPATED = range(4)
 
@@ -49,13 +49,14 @@ def relaxed(trial, dt, speed, power):
 @njit
 def law_step(state, film, volume, law, dt, overlap):
     """Moves one contact to a new overlap over `dt`; returns its force."""
-    radius, modulus, viscosity, alpha, width, (squeezed, beta, kappa, narrow, inlet, rise, thickening, deep) = law
+    radius, modulus, viscosity, alpha, width, (squeezed, beta, kappa, narrow, inlet, rise, thickening, deep, wide) = law
     a = max(state[RADIUS_A], 1e-3 * width)
     trial = state[RIM] + overlap - state[OVERLAP]
     y, stiff = 0.0, 1.0
     if trial > 0:
         thick = viscosity * (1 + deep * alpha * modulus * a / radius)
-        speed = 2 * modulus / thick * (kappa * a / (squeezed * radius**1.4) * (a**2 / radius) ** narrow) ** (5 / 3)
+        resistance = squeezed * radius**1.4 * (radius / a**2) ** narrow * (radius / a) ** wide
+        speed = 2 * modulus / thick * (kappa * a / resistance) ** (5 / 3)
         power = 5 / 3 * (1 - narrow)
         y = relaxed(trial, dt, speed, power)
         # A contraction: y falls with G^m by less than G falls with y.

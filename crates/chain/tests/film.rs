@@ -288,14 +288,14 @@ fn limited_oil_loses_what_the_whole_contact_loses() {
             assert!((force_n + 0.24 - expected_n).abs() < 0.02 * peak_n, "{force_n} {case}");
         }
         let budget = outcome.budget.unwrap();
-        // Some twenty tolerances of a step.
-        assert!(budget.relative_residual().abs() < 3e-8, "{budget:?}");
+        // Some forty tolerances of a step.
+        assert!(budget.relative_residual().abs() < 5e-8, "{budget:?}");
         let lost = loss_j(&budget) / number(&case, "loss_j");
-        // Flooded 0.84 to 0.95. Oil for half the film loses a tenth of what a flooded one does.
+        // Flooded 0.84 to 0.97. Oil for just the film leaves the law little to squeeze.
         let range = match case["over_trapped"].as_f64() {
-            Some(0.5) => 0.87..1.2,
-            Some(1.0) => 0.72..0.95,
-            _ => 0.82..1.08,
+            Some(0.5) => 0.85..1.25,
+            Some(1.0) => 0.65..1.0,
+            _ => 0.82..1.12,
         };
         assert!(range.contains(&lost), "{lost} {case}");
     }

@@ -89,12 +89,16 @@ fn a_maximum_at_a_force_jump_out_of_silence_is_seen() {
         ..row(5, 0.5, vec![])
     };
     let system = System::new(&chain).unwrap();
-    let (mut wall, mut bead) = (Signal::new(Sensor::Contact(5)), Signal::new(Sensor::Velocity(5)));
-    let method = Method::dormand_prince(1e-9);
-    run(&system, &method, Limits::until(3e-4), &mut [&mut wall, &mut bead]).unwrap();
-    let speed = bead.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
-    let peak = wall.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
-    close(peak, 3000.0 * speed, 1e-6);
+    // A step of a given length runs across the jump: what it interpolates there is of low order.
+    let given = [(Method::rk4(1e-6), 0.03), (Method::rk4(3e-7), 2e-4)];
+    for (method, off) in [(Method::dormand_prince(1e-9), 1e-6)].into_iter().chain(given) {
+        let (mut wall, mut bead) =
+            (Signal::new(Sensor::Contact(5)), Signal::new(Sensor::Velocity(5)));
+        run(&system, &method, Limits::until(3e-4), &mut [&mut wall, &mut bead]).unwrap();
+        let speed = bead.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
+        let peak = wall.maxima().iter().map(|m| m.value).fold(0.0, f64::max);
+        close(peak, 3000.0 * speed, off);
+    }
 }
 
 #[test]

@@ -10,10 +10,10 @@ use std::f64::consts::PI;
 ///
 /// F = 2E* (a δ − ∫_0^a δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y) where a grows with y > 0;
 ///
-/// the squeezed rim y relaxes, ẏ = δ̇ − (2E*/η) (κ a y / (c R*^{1.4} (R* y/a²)^g))^{5/3} − y ȧ/(2a), to y = 0 at
-/// least: oil that is drawn cavitates. Viscosity η exp(α p): with x = α k E* (β a y/R*²)^{1/3} and
+/// the squeezed rim y relaxes, ẏ = δ̇ − (2E*/η) (κ a y / (c R*^{1.4} (R* y/a²)^g (R*/a)^e))^{5/3} − y ȧ/(2a), to
+/// y = 0 at least: oil that is drawn cavitates. Viscosity η exp(α p): with x = α k E* (β a y/R*²)^{1/3} and
 /// G = x/(1 − e^{−x}), β becomes β G^n and η becomes η G^m (1 + l α E* a/R*).
-/// c, β, κ, g, k, m, n, l are pure numbers, fitted to a transient elastohydrodynamic contact
+/// c, β, κ, g, e, k, m, n, l are pure numbers, fitted to a transient elastohydrodynamic contact
 /// (`bench/film`), not to measurements.
 ///
 /// A volume V of oil ends at a meniscus. The oil beyond, which is missing, would bear 12 η δ̇ ∫ W²/(2πr h³) dr
@@ -36,16 +36,16 @@ pub struct FilmEntrained {
     pub stiffness: Option<f64>,
 }
 
-/// c and g: the rim's resistance, and how it follows the rim's width.
-const RIM: [f64; 2] = [3.887, 0.04487];
+/// c, g and e: the rim's resistance, and how it follows the rim's width and the contact's.
+const RIM: [f64; 3] = [3.125, 0.0389, 0.05852];
 /// β: film that the edge leaves over the rim's overlap.
-const LEFT: f64 = 0.4416;
+const LEFT: f64 = 0.4871;
 /// κ: the rim's stiffness.
-const STIFF: f64 = 0.6543;
+const STIFF: f64 = 0.6664;
 /// k, m and n: pressure of an inlet, and how viscosity and film follow it.
-const PRESSURE: [f64; 3] = [2.266, -0.1592, 0.5735];
+const PRESSURE: [f64; 3] = [2.47, -0.2138, 0.5311];
 /// l: how viscosity at the rim follows the pressure in the contact.
-const DEEP: f64 = 0.005603;
+const DEEP: f64 = 0.01202;
 
 /// J near the edge and far away, to the power −0.8.
 const J: [f64; 2] = [0.08922, 0.05819];
@@ -58,7 +58,7 @@ impl Term<5> for FilmEntrained {
     const INFO: LawInfo = LawInfo {
         name: "film_entrained",
         equation: "F = 2 E* (a δ − ∫ δ_e ds + κ a y) − K δ^{3/2},  a² = R* (δ + β y),  \
-                   ẏ = δ̇ − (2 E*/η) (κ a y/(c R*^{1.4} (R* y/a²)^g))^{5/3} − y ȧ/(2a) for y > 0;  \
+                   ẏ = δ̇ − (2 E*/η) (κ a y/(c R*^{1.4} (R* y/a²)^g (R*/a)^e))^{5/3} − y ȧ/(2a) for y > 0;  \
                    E* = 3 K/(4 √R*)",
         parameters: &[
             Parameter {
@@ -313,12 +313,13 @@ impl EntrainedFilm {
         (x / less, 1.0 - x * (1.0 - less) / less)
     }
 
-    /// What the rim's width and thickened oil make of the rate at which a rim a y relaxes:
-    /// (R* y/a²)^{−5g/3} G^{−m}/(1 + l α E* a/R*).
+    /// What the widths of rim and contact and thickened oil make of the rate at which a rim a y relaxes:
+    /// (R* y/a²)^{−5g/3} (R*/a)^{−5e/3} G^{−m}/(1 + l α E* a/R*).
     fn giving_way(&self, rim: f64, a: f64, thick: f64) -> f64 {
         let narrow = (rim.max(f64::MIN_POSITIVE) * self.radius / (a * a * a)).ln();
+        let resisting = RIM[1] * narrow + RIM[2] * (self.radius / a).ln();
         let thicker = if self.inlet > 0.0 { PRESSURE[1] * thick.ln() } else { 0.0 };
-        (-5.0 / 3.0 * RIM[1] * narrow - thicker).exp() / (1.0 + self.deep * a)
+        (-5.0 / 3.0 * resisting - thicker).exp() / (1.0 + self.deep * a)
     }
 
     /// What the volume leaves of a contact with its edge at radius a, at (δ, ∫ a² dδ).

@@ -234,10 +234,11 @@ impl Signal {
         self.stretches.truncate(kept);
     }
 
-    /// A slope right in sign: near a maximum, and where a contact touches or parts, the
-    /// samples alone may not be.
+    /// A slope right in sign: near a maximum, where a contact touches or parts, and where a step of a
+    /// given length runs across a jump, the samples alone may not be.
     fn slope(&self, piece: &Piece<'_>, theta: f64, (slope, off): (f64, f64)) -> f64 {
-        match slope.abs() < off || piece.is_near_touch(self.sensor, theta) {
+        let near = slope.abs() < off || piece.is_near_touch(self.sensor, theta);
+        match near || piece.has_given_length() {
             true => piece.signal_rate(self.sensor, theta),
             false => slope,
         }
@@ -423,24 +424,45 @@ fn interior_maxima(
         last = i;
     }
     if piece.has_given_length() {
-        add_jumps(piece, sensor, values, &mut found);
+        add_jumps(piece, sensor, [start_slope, end_slope], values, &mut found);
     }
     found
 }
 
-/// Adds maxima at jumps within a step of a given length, at which rates do not change sign: samples
-/// that are higher than both their neighbours.
-fn add_jumps(piece: &Piece<'_>, sensor: Sensor, values: [f64; 5], maxima: &mut Vec<Maximum>) {
+/// Adds maxima at jumps within a step of a given length, at which rates do not change sign: beside
+/// samples that are higher than both their neighbours.
+fn add_jumps(
+    piece: &Piece<'_>,
+    sensor: Sensor,
+    [start_slope, end_slope]: [f64; 2],
+    values: [f64; 5],
+    maxima: &mut Vec<Maximum>,
+) {
     let floor = JUMP * values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    for i in 1..4 {
-        let (low, high) = (0.25 * (i - 1) as f64, 0.25 * (i + 1) as f64);
+    for (i, value) in values.into_iter().enumerate() {
+        let rises = if i == 0 { start_slope > 0.0 } else { value > values[i - 1] + floor };
+        let falls = if i == 4 { end_slope <= 0.0 } else { value > values[i + 1] + floor };
+        let [low, at, high] = [i.max(1) - 1, i, i.min(3) + 1].map(|sample| 0.25 * sample as f64);
         let between = piece.time_s(low)..=piece.time_s(high);
-        let seen = maxima.iter().any(|it| between.contains(&it.time_s));
-        if !seen && values[i] > values[i - 1].max(values[i + 1]) + floor {
-            maxima.push(highest_between(piece, sensor, low, high));
+        if rises && falls && !maxima.iter().any(|it| between.contains(&it.time_s)) {
+            let [left, right] = [low, high].map(|end| highest_towards(piece, sensor, at, end));
+            maxima.push(if right.value > left.value { right } else { left });
         }
     }
     maxima.sort_by(|one, two| one.time_s.total_cmp(&two.time_s));
+}
+
+/// The highest value from a sample on, where values rise towards a jump.
+fn highest_towards(piece: &Piece<'_>, sensor: Sensor, from: f64, mut end: f64) -> Maximum {
+    let (mut theta, mut value) = (from, piece.signal(sensor, from));
+    for _ in 0..40 {
+        let middle = 0.5 * (theta + end);
+        match piece.signal(sensor, middle) {
+            higher if higher >= value => (theta, value) = (middle, higher),
+            _ => end = middle,
+        }
+    }
+    Maximum { time_s: piece.time_s(theta), value }
 }
 
 /// The maximum in a bracket. Slopes of samples may be wrong near the ends of the
@@ -453,8 +475,9 @@ fn refined(piece: &Piece<'_>, sensor: Sensor, (low, high): (f64, f64)) -> Option
     let theta = bracketed_root(falling, low, high, 1e-12);
     let maximum = Maximum { time_s: piece.time_s(theta), value: piece.signal(sensor, theta) };
     // Fixed steps run across jumps, where values decide, not rates.
-    let above = |theta: f64| maximum.value > piece.signal(sensor, theta);
-    (falling(high) >= 0.0 || (above(low) && above(high))).then_some(maximum)
+    let above = |theta: f64| maximum.value >= piece.signal(sensor, theta);
+    let falls = falling(high) >= 0.0 && !piece.has_given_length();
+    (falls || (above(low) && above(high))).then_some(maximum)
 }
 
 /// Adds maxima near reversals of contacts' rates that lie between samples, and gives the minima there:
