@@ -72,10 +72,10 @@ fn a_row_with_an_effective_material_is_taken_for_that_material() {
 
 #[test]
 fn a_film_shortens_the_time_of_a_fast_shot_as_another_program_says() {
-    // bench/film/row.py with α = 0, extrapolated from steps of 20 and 10 ns: 0.9869 to 0.9873.
+    // bench/film/row.py with α = 0, extrapolated from steps of 20 and 10 ns: 0.98607 to 0.98617.
     let shots = FilmShots::new((1e-3, &[1.2]), Vec::new()).unwrap();
     let films = shots.run(&[FilmVariant::ISOVISCOUS], "", &Silent).unwrap();
     for ratio in incident(&films[0]) {
-        assert!((ratio - 0.9871).abs() < 1e-3, "{ratio}");
+        assert!((ratio - 0.9861).abs() < 1e-3, "{ratio}");
     }
 }
