@@ -53,7 +53,7 @@ def test_progress_is_told_of_fits_gauges_designs_and_single_shots():
         "fit": lambda progress: hc.fit(dry, free="B", progress=progress),
         "posterior": lambda progress: hc.fit(dry, free="B", method="posterior", steps=50, progress=progress),
         "design": lambda progress: hc.design(dry, free="B", picks=1, progress=progress),
-        "gauge": lambda progress: hc.gauge(wet, dry, model="motor", dry_free="dry.B", accuracy=1e-3, progress=progress),
+        "gauge": lambda progress: hc.gauge(wet, dry, model="motor", dry_free="dry.B", use="incident", progress=progress),
         "shot": lambda progress: hc.shot(hc.preset("dry"), accuracy=1e-9, progress=progress),
     }
     for verb, call in calls.items():

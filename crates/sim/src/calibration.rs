@@ -12,7 +12,7 @@ use crate::plan::Plan;
 use crate::shot::{Conditioning, Shot};
 use crate::similar::{Places, speed_m_s};
 use hertzchain_chain::ensemble::{End, Precision};
-use hertzchain_chain::observe::{Competing, Passage, Pulse};
+use hertzchain_chain::observe::{Competing, Maximum, Passage, Pulse};
 use hertzchain_chain::{InstructionSet, System};
 use rayon::prelude::*;
 use std::fmt::{Display, Formatter, Result as Formatted};
@@ -136,6 +136,10 @@ const PASSED: f64 = 1.1;
 /// Shots of a family wait so many times as long as its calibration shots take for all maxima of at least
 /// a share of the reflected pulse's height; those of half of it compete.
 const WATCHED: (f64, f64) = (1.05, 0.35);
+
+/// Share of wall²/incident from which on the batch loop may take a maximum for the reflected pulse, until a
+/// higher one comes, and end its wait behind it; less a tenth for errors of heights.
+const TAKEN: f64 = 0.09;
 
 /// Highest share of a pulse's peak that a competing maximum may have for errors to be those of a smooth
 /// family: rounding, and what contacts do behind the pulse, move and merge higher ones.
@@ -652,26 +656,32 @@ fn is_clear(shot: &Shot) -> bool {
 
 /// When shots like these, which were followed to the end, are over.
 fn end(shots: &[Option<Shot>]) -> End {
-    if shots.iter().flatten().all(is_alone) {
+    let found: Vec<&Shot> = shots.iter().flatten().collect();
+    if found.iter().all(|shot| is_alone(shot) && waiting(shot, 1.0) == 1.0) {
         return End::Passed;
     }
-    let last = shots.iter().flatten().map(last_watched).fold(PASSED, f64::max);
+    let last = found.iter().map(|shot| waiting(shot, WATCHED.1)).fold(PASSED, f64::max);
     if last.is_finite() { End::Behind(WATCHED.0 * last) } else { End::Reflected }
 }
 
-/// The time of the last returning maximum that is watched, from the wall's peak, over that of the reflected
-/// pulse; infinite without one.
-fn last_watched(shot: &Shot) -> f64 {
+/// The time of the last returning maximum of at least a share of the reflected pulse's height, from the wall's
+/// peak, over that of the first one that could be taken for the pulse until a higher one comes; infinite
+/// without one.
+fn waiting(shot: &Shot, share: f64) -> f64 {
     let Some((passage, peak)) =
         shot.passage.as_ref().ok().and_then(|passage| Some((passage, passage.reflected?)))
     else {
         return f64::INFINITY;
     };
-    let watched = passage.returning_maxima.iter().rev();
-    let last =
-        watched.filter(|maximum| maximum.value >= WATCHED.1 * peak.value).map(|it| it.time_s);
-    let ways = |time_s: f64| (time_s - passage.wall.time_s) / (peak.time_s - passage.wall.time_s);
-    last.map(ways).next().unwrap_or(f64::INFINITY)
+    let at_least = |height: f64| {
+        let high = move |maximum: &&Maximum| maximum.value >= height;
+        passage.returning_maxima.iter().filter(high).map(|it| it.time_s - passage.wall.time_s)
+    };
+    let taken = (TAKEN * passage.wall.value.powi(2) / passage.incident.value).min(peak.value);
+    match (at_least(taken).next(), at_least(share * peak.value).last()) {
+        (Some(first_s), Some(last_s)) => last_s / first_s,
+        _ => f64::INFINITY,
+    }
 }
 
 /// Cost of a shot, in steps of single precision a contact time.
