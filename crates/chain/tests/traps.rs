@@ -101,6 +101,26 @@ fn a_maximum_at_a_force_jump_out_of_silence_is_seen() {
     }
 }
 
+/// Between steps of Verlet forces that follow a velocity are not those that the rates at their ends say.
+#[test]
+fn a_smooth_maximum_is_one_whatever_the_step() {
+    let laws = vec![hertz(), law(DampingLinear { coefficient_n_s_m: 400.0 })];
+    let system = System::new(&row(8, 0.5, laws)).unwrap();
+    let peak = |method: Method| {
+        let mut wall = Signal::new(Sensor::Contact(8));
+        run(&system, &method, Limits::until(3e-4), &mut [&mut wall]).unwrap();
+        let highest = wall.maxima().iter().max_by(|a, b| a.value.total_cmp(&b.value)).copied();
+        let highest = highest.unwrap_or_else(|| panic!("{method:?}"));
+        (highest.time_s, highest.value)
+    };
+    let (time_s, value) = peak(Method::dormand_prince(1e-9));
+    for step_s in [2e-7, 5e-8, 2e-8, 1e-8, 5e-9, 2e-9] {
+        let found = peak(Method::verlet(step_s));
+        assert!((found.0 - time_s).abs() < step_s, "{step_s} {found:?} {time_s}");
+        close(found.1, value, 4e3 * step_s);
+    }
+}
+
 #[test]
 fn a_shot_between_free_ends_ends_when_all_fly_apart() {
     let chain = Chain { far: FarEnd::Free, ..row(2, 0.5, vec![hertz()]) };

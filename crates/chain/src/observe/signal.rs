@@ -131,6 +131,10 @@ pub(crate) fn least_n_s(system: &System) -> f64 {
 /// A force jump, or a dip, smaller than this fraction of the largest value is rounding.
 const JUMP: f64 = 1e-9;
 
+/// What a step of a given length interpolates differs from what its rates say by less than this fraction,
+/// but across a jump.
+const ACROSS: f64 = 0.01;
+
 /// Where a force is cut it jumps by less than this many tolerances of a step, because a
 /// step ends near the cut and not at it.
 const OF_CUT: f64 = 0.03;
@@ -475,8 +479,10 @@ fn refined(piece: &Piece<'_>, sensor: Sensor, (low, high): (f64, f64)) -> Option
     let theta = bracketed_root(falling, low, high, 1e-12);
     let maximum = Maximum { time_s: piece.time_s(theta), value: piece.signal(sensor, theta) };
     // Fixed steps run across jumps, where values decide, not rates.
-    let above = |theta: f64| maximum.value >= piece.signal(sensor, theta);
-    let falls = falling(high) >= 0.0 && !piece.has_given_length();
+    let above = |theta: f64| maximum.value > piece.signal(sensor, theta);
+    let ends = [low, high].map(|theta| piece.signal(sensor, theta));
+    let jumps = ends.iter().any(|end| maximum.value < end - ACROSS * end.abs());
+    let falls = falling(high) >= 0.0 && !(piece.has_given_length() && jumps);
     (falls || (above(low) && above(high))).then_some(maximum)
 }
 
