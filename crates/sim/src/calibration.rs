@@ -678,7 +678,7 @@ fn waiting(shot: &Shot, share: f64) -> f64 {
         passage.returning_maxima.iter().filter(high).map(|it| it.time_s - passage.wall.time_s)
     };
     let taken = (TAKEN * passage.wall.value.powi(2) / passage.incident.value).min(peak.value);
-    match (at_least(taken).next(), at_least(share * peak.value).last()) {
+    match (at_least(taken).next(), at_least(share * peak.value).next_back()) {
         (Some(first_s), Some(last_s)) => last_s / first_s,
         _ => f64::INFINITY,
     }

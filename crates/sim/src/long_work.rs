@@ -146,7 +146,7 @@ fn progress((steps, elapsed_s): (u64, f64), time_s: f64, expected: Expected) -> 
             let left_s = (elapsed_s * (1.0 / share - 1.0)).max((1.0 - share) * expected.time_s);
             format!("about {:.0} % of this run, {} left", 100.0 * share, rough(left_s))
         }
-        false => format!("more than the {:.1e} that were expected", expected.steps),
+        false => format!("more than the {:.1e} steps that were expected", expected.steps),
     };
     format!("{steps} steps, t = {time_s:.3e} s: {how_far}")
 }

@@ -457,12 +457,15 @@ impl<'a> PreparedShot<'a> {
     }
 
     fn note_reached(&self, shot: &mut Shot, reached: f64) {
-        shot.accuracy_reached = Some(reached);
+        // Two runs without times do not differ.
+        shot.accuracy_reached = Some(reached).filter(|reached| *reached > 0.0);
         if reached > self.plan.accuracy {
-            shot.notes.push(format!(
-                "the asked accuracy of {:e} was not reached: the estimated relative error is {reached:.1e}",
-                self.plan.accuracy
-            ));
+            let known = match reached.is_finite() {
+                true => format!("the estimated relative error is {reached:.1e}"),
+                false => "its error is not known".to_owned(),
+            };
+            let asked = self.plan.accuracy;
+            shot.notes.push(format!("the asked accuracy of {asked:e} was not reached: {known}"));
         }
     }
 

@@ -14,6 +14,6 @@ fn progress_beyond_the_estimate_is_no_share_of_it() {
     assert_eq!(progress((250, 1.0), 1e-3, expected), quarter);
     let slow = "250 steps, t = 1.000e-3 s: about 25 % of this run, 60 s left";
     assert_eq!(progress((250, 20.0), 1e-3, expected), slow);
-    let beyond = "2000 steps, t = 1.000e-3 s: more than the 1.0e3 that were expected";
+    let beyond = "2000 steps, t = 1.000e-3 s: more than the 1.0e3 steps that were expected";
     assert_eq!(progress((2000, 90.0), 1e-3, expected), beyond);
 }
